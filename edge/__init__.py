@@ -1,0 +1,1 @@
+"""One process a camera: from a frame to an observation."""

@@ -1,0 +1,1 @@
+"""The site file: one TOML that says what this box has and how it shall work."""

@@ -1,0 +1,102 @@
+"""Schema of the site file. Unknown keys are refused, every field has a description and bounds."""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import msgspec
+from msgspec import Meta
+
+from models.errors import UserError
+
+SITE_VERSION = 1
+
+Name = Annotated[str, Meta(pattern=r"^[a-z0-9][a-z0-9_-]{0,31}$", description="lower-case letters, digits, - and _")]
+
+
+class Section(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Base of every table of the site file."""
+
+
+class CameraConfig(Section, frozen=True):
+    """One camera of the room."""
+
+    name: Annotated[Name, Meta(description="the camera's name, as in the calibration")]
+    kind: Annotated[Literal["video"], Meta(description="video: a file played in real time")]
+    path: Annotated[str, Meta(min_length=1, description="the file, relative to the data folder")]
+    rate_hz: Annotated[float, Meta(gt=0, le=240, description="frames a second of a file; every frame is shown")] = 30.0
+    offset_ms: Annotated[float, Meta(ge=-1000, le=1000, description="delay of this camera's shutter against the others'")] = 0.0
+
+
+class BusConfig(Section, frozen=True):
+    """How the processes of the box talk to one another (Zenoh; the fusion process is the router)."""
+
+    endpoint: Annotated[str, Meta(pattern=r"^tcp/[^/]+:\d+$", description="where the router listens")] = "tcp/127.0.0.1:7447"
+
+
+class TabletConfig(Section, frozen=True):
+    """The page that the teacher opens."""
+
+    host: Annotated[str, Meta(description="address to listen on; 0.0.0.0 is every network of the box")] = "0.0.0.0"  # noqa: S104 - the tablet is another machine
+    port: Annotated[int, Meta(ge=1, le=65535, description="port of the page")] = 8080
+
+
+class InferenceConfig(Section, frozen=True):
+    """What the networks may use."""
+
+    provider: Annotated[Literal["cpu", "openvino"], Meta(description="execution provider of the networks")] = "cpu"
+    max_rate_hz: Annotated[
+        Literal[30, 15, 10, 5], Meta(description="pose inferences a camera and second that the governor never exceeds")
+    ] = 30
+    cpu_target: Annotated[float, Meta(gt=0.1, le=0.95, description="share of the CPU that the governor fills")] = 0.85
+
+
+class FusionConfig(Section, frozen=True):
+    """Reconstruction."""
+
+    preset: Annotated[Literal["default", "paper"], Meta(description="default: what measured best; paper: as printed")] = "default"
+    live_hz: Annotated[float, Meta(ge=5, le=60, description="fused poses a second")] = 30.0
+
+
+class SupervisorConfig(Section, frozen=True):
+    """When a part that keeps failing is given up."""
+
+    max_restarts: Annotated[int, Meta(ge=0, le=100, description="restarts of one process within the window")] = 5
+    window_s: Annotated[float, Meta(gt=0, le=3600, description="length of the window")] = 60.0
+
+
+class Site(Section, frozen=True):
+    """A whole site file."""
+
+    version: Annotated[int, Meta(description="version of this file's schema")]
+    name: Annotated[str, Meta(min_length=1, max_length=80, description="shown at the top of the page")]
+    calibration: Annotated[str, Meta(min_length=1, description="the calibration file, relative to the site file")]
+    cameras: Annotated[list[CameraConfig], Meta(min_length=2, max_length=8, description="the cameras in use")]
+    bus: BusConfig = BusConfig()
+    tablet: TabletConfig = TabletConfig()
+    inference: InferenceConfig = InferenceConfig()
+    fusion: FusionConfig = FusionConfig()
+    supervisor: SupervisorConfig = SupervisorConfig()
+
+
+def decode_site(data: bytes, origin: Path | str) -> Site:
+    """Read a site file.
+
+    Raises:
+        UserError: the file is not TOML, has an unknown key or a value out of bounds; the line names the key.
+    """
+    try:
+        site: Site = msgspec.toml.decode(data, type=Site)
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise UserError(f"site file {origin}: {error}; see docs/configuration.md for every key") from error
+    if site.version != SITE_VERSION:
+        raise UserError(f"site file {origin}: version {site.version} is not known to this KineBox, which reads {SITE_VERSION}")
+    names = [camera.name for camera in site.cameras]
+    doubled = sorted({name for name in names if names.count(name) > 1})
+    if doubled:
+        raise UserError(f"site file {origin}: camera '{doubled[0]}' occurs twice; every camera needs a name of its own")
+    return site
+
+
+def schema() -> dict[str, Any]:
+    """JSON schema of the site file, from which its documentation is written."""
+    return msgspec.json.schema(Site)

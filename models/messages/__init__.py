@@ -1,0 +1,1 @@
+"""The messages on the bus, their wire format and their topics."""

@@ -1,0 +1,52 @@
+"""What fusion asks of one camera (fusion -> edge): how often, with which network, and where to look."""
+
+from typing import Literal
+
+import msgspec
+
+from models.messages.observation import Crop
+
+PoseNetwork = Literal["thunder", "lightning"]
+
+
+class CropPrediction(msgspec.Struct, frozen=True):
+    """Where fusion expects the pupil, with its motion, so that the edge can carry it to a frame's own time."""
+
+    crop: Crop
+    t_ns: int
+    velocity_x_px_s: float
+    velocity_y_px_s: float
+
+    def at(self, t_ns: int) -> Crop:
+        """The crop carried at constant velocity to `t_ns` (CLOCK_MONOTONIC)."""
+        seconds = (t_ns - self.t_ns) * 1e-9
+        return Crop(
+            self.crop.centre_x_px + self.velocity_x_px_s * seconds,
+            self.crop.centre_y_px + self.velocity_y_px_s * seconds,
+            self.crop.side_px,
+            self.crop.angle_rad,
+        )
+
+
+class ViewControl(msgspec.Struct, frozen=True):
+    """The governor's plan and the view selection's for one camera.
+
+    A frame is due for inference when floor((t_mid - offset) * rate) differs from that of the last one inferred, so that
+    cameras with different offsets take turns without talking to one another.
+
+    Attributes:
+        rate_hz: inferences a second on new frames; 0 leaves the camera idle.
+        offset_ns: this camera's place in the turn.
+        network: pose network to run.
+        search: look at every person found, because the pupil is not chosen yet; otherwise only at `prediction`.
+        prediction: None when the pupil's place is not known.
+    """
+
+    camera: str
+    sequence: int
+    t_ns: int
+    rate_hz: float
+    offset_ns: int
+    network: PoseNetwork
+    search: bool
+    prediction: CropPrediction | None

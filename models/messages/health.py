@@ -1,0 +1,63 @@
+"""How a process is (everyone -> supervisor, governor, tablet)."""
+
+from typing import Literal
+
+import msgspec
+
+
+class CameraHealth(msgspec.Struct, frozen=True):
+    """What an edge process measured over the last second.
+
+    Attributes:
+        source_hz: frames a second that the source delivered.
+        fresh_hz: pose inferences a second on new frames.
+        target_hz: what the governor asked for.
+        skipped: due frames, since the start, that were dropped because a newer one was already there.
+        backlog_ms: age of the newest frame when its turn came.
+        network: pose network in use.
+        stage_ms: CPU milliseconds a processed frame by stage ("decode", "detect", "crop", "pose", ...).
+    """
+
+    camera: str
+    source_hz: float
+    fresh_hz: float
+    target_hz: float
+    skipped: int
+    backlog_ms: float
+    network: str
+    stage_ms: dict[str, float]
+
+
+class FusionHealth(msgspec.Struct, frozen=True):
+    """What the fusion process measured over the last second.
+
+    `cpu_load` is the share (0 to 1) of the CPU granted to the box that is in use; `rejected` counts messages that could
+    not be read.
+    """
+
+    live_hz: float
+    step_ms: float
+    cpu_load: float
+    rejected: int
+    pupil: Literal["searching", "found"]
+
+
+class Health(msgspec.Struct, frozen=True):
+    """State of one process, published about once a second on its own topic.
+
+    Attributes:
+        process: "edge-<camera>", "fusion", "tablet", "supervisor".
+        state: "ok", "degraded" (works, less than wished; `reason` says why), "failed".
+        reason: one line for the teacher or the technician; empty when ok.
+        cpu_cores: CPU seconds a second of this process.
+    """
+
+    process: str
+    pid: int
+    t_ns: int
+    state: Literal["ok", "degraded", "failed"]
+    reason: str
+    cpu_cores: float
+    rss_mb: float
+    camera: CameraHealth | None = None
+    fusion: FusionHealth | None = None

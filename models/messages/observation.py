@@ -1,0 +1,93 @@
+"""What one camera saw in one frame (edge -> fusion)."""
+
+import math
+
+import msgspec
+import numpy as np
+
+from models.arrays import Float, Float32
+from models.skeleton import coco
+
+
+class Crop(msgspec.Struct, frozen=True):
+    """A square region of a camera's picture that is handed to the pose network.
+
+    `angle_rad` turns the square: 0 is upright, positive turns its up direction clockwise on the screen (towards +x), so that the
+    trunk of a person who leans by that angle points up in the crop.
+    """
+
+    centre_x_px: float
+    centre_y_px: float
+    side_px: float
+    angle_rad: float = 0.0
+
+    def to_image(self, points: Float) -> Float:
+        """Crop coordinates (..., 2) in [0, 1] (x right, y down) to image pixels (..., 2)."""
+        local = (np.asarray(points, np.float64) - 0.5) * self.side_px
+        return local @ self._rotation().T + (self.centre_x_px, self.centre_y_px)
+
+    def to_crop(self, points_px: Float) -> Float:
+        """Image pixels (..., 2) to crop coordinates (..., 2) in [0, 1]: the inverse of `to_image`."""
+        local = (np.asarray(points_px, np.float64) - (self.centre_x_px, self.centre_y_px)) @ self._rotation()
+        return local / self.side_px + 0.5
+
+    def _rotation(self) -> Float:
+        c, s = math.cos(self.angle_rad), math.sin(self.angle_rad)
+        return np.array(((c, -s), (s, c)))
+
+
+class Person(msgspec.Struct, frozen=True, eq=False):
+    """One person in one picture.
+
+    Attributes:
+        track: identity of the person within this camera; a new number when the track was lost.
+        crop: the region that the pose network saw.
+        keypoints_px: (17, 2) COCO keypoints in image pixels as observed (distorted), pixel centres at whole numbers;
+            finite even where the network guesses, so read them together with `score`.
+        sigma_px: (17,) one standard deviation per axis in image pixels.
+        score: (17,) the network's confidence in [0, 1].
+    """
+
+    track: int
+    crop: Crop
+    keypoints_px: Float32
+    sigma_px: Float32
+    score: Float32
+
+    def __post_init__(self) -> None:
+        require_array("keypoints_px", self.keypoints_px, (coco.COUNT, 2))
+        require_array("sigma_px", self.sigma_px, (coco.COUNT,))
+        require_array("score", self.score, (coco.COUNT,))
+
+
+class Observation(msgspec.Struct, frozen=True, eq=False):
+    """Everything that fusion learns from one inference of one camera.
+
+    Attributes:
+        camera: the camera's name.
+        epoch: counts the loops of a source; no estimate may be carried over its change.
+        sequence: counts the observations of this edge process.
+        frame: index of the picture in its source within the epoch.
+        t_mid_ns: CLOCK_MONOTONIC at mid-exposure.
+        t_published_ns: CLOCK_MONOTONIC when it was handed to the bus.
+        network: name of the pose network that ran.
+        persons: the people that were looked at, best first; empty if nobody was found.
+    """
+
+    camera: str
+    epoch: int
+    sequence: int
+    frame: int
+    t_mid_ns: int
+    t_published_ns: int
+    network: str
+    persons: tuple[Person, ...]
+
+
+def require_array(field: str, value: object, shape: tuple[int, ...], dtype: type[np.generic] = np.float32) -> None:
+    """Raise ValueError unless `value` is a finite numpy array of that shape and dtype."""
+    if not isinstance(value, np.ndarray) or value.shape != shape or value.dtype != dtype:
+        found = f"{value.dtype} {value.shape}" if isinstance(value, np.ndarray) else type(value).__name__
+        raise ValueError(f"{field} must be an array of {np.dtype(dtype)} {shape}, not {found}")
+    if value.dtype.kind == "f" and not np.isfinite(value).all():
+        raise ValueError(f"{field} contains a value that is not finite")

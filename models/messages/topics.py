@@ -1,0 +1,32 @@
+"""Every key expression on the bus. A room is the first level, so that several boxes can share a router."""
+
+ROOM = "gym"
+
+
+def observation(camera: str) -> str:
+    """edge -> fusion"""
+    return f"{ROOM}/camera/{camera}/observation"
+
+
+def control(camera: str) -> str:
+    """fusion -> edge"""
+    return f"{ROOM}/camera/{camera}/control"
+
+
+def motion(kind: str) -> str:
+    """fusion -> everyone; kind is "live" or "smooth" """
+    return f"{ROOM}/motion/{kind}"
+
+
+def health(process: str) -> str:
+    """every process -> everyone"""
+    return f"{ROOM}/health/{process}"
+
+
+def alive(process: str) -> str:
+    """liveliness token of a process"""
+    return f"{ROOM}/alive/{process}"
+
+
+ALL_HEALTH = f"{ROOM}/health/*"
+ALL_ALIVE = f"{ROOM}/alive/*"

@@ -1,0 +1,76 @@
+"""What a process of the box is given, and the bus as it sees it.
+
+`services` and `edge` never import one another: the command line opens the bus, finds a process by its entry point in the group
+`kinebox.processes` and calls it with a `ProcessContext`.
+"""
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from models.camera.rig import Rig
+from models.config.site import Site
+
+
+@dataclass(frozen=True)
+class Delivery:
+    """One message as it arrived."""
+
+    topic: str
+    payload: bytes
+
+
+class Subscription(Protocol):
+    """A stream of deliveries that keeps the newest few of each topic and never grows."""
+
+    def receive(self, timeout_s: float) -> Delivery | None:
+        """The oldest delivery that is kept, waiting for one at most `timeout_s`; None if none came."""
+
+    def close(self) -> None:
+        """Stop receiving."""
+
+
+class Bus(Protocol):
+    """Publish and subscribe by key expression, and see who is alive."""
+
+    def publish(self, topic: str, payload: bytes) -> None:
+        """Hand a message over; never waits for a receiver."""
+
+    def subscribe(self, *topics: str, keep: int) -> Subscription:
+        """Receive what is published on key expressions, keeping at most `keep` unread messages of each topic, the newest."""
+
+    def declare_alive(self, topic: str) -> None:
+        """Hold a liveliness token until the bus is closed or this process dies."""
+
+    def watch_alive(self, topic: str, seen: Callable[[str, bool], None]) -> None:
+        """Call `seen(topic, alive)` for every token that is there and for every change."""
+
+    def close(self) -> None:
+        """Leave the bus; tokens go."""
+
+
+@dataclass(frozen=True)
+class ProcessContext:
+    """Everything a process of the box needs from outside.
+
+    Attributes:
+        name: the process's name on the bus: "edge-<camera>", "fusion", "tablet".
+        camera: the camera served, for an edge process.
+        site: the decoded site file.
+        rig: calibration of the site's cameras, in the site's order.
+        data: folder with networks and footage.
+        start_ns: CLOCK_MONOTONIC shared by all processes of one run; sources count their frames from it.
+        bus: open session.
+        stop: set when the process shall end.
+    """
+
+    name: str
+    camera: str | None
+    site: Site
+    rig: Rig
+    data: Path
+    start_ns: int
+    bus: Bus
+    stop: threading.Event

@@ -1,0 +1,1 @@
+"""Joints, limbs and their names."""

@@ -1,0 +1,1 @@
+"""Reconstruction, evaluation, the bus, the tablet and what keeps them running."""
