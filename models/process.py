@@ -8,7 +8,7 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from models.camera.rig import Rig
 from models.config.site import Site
@@ -51,6 +51,13 @@ class Bus(Protocol):
         """Leave the bus; tokens go."""
 
 
+class Resources(NamedTuple):
+    """What this process used: CPU seconds a second since the call before, and resident memory now."""
+
+    cpu_cores: float
+    rss_mb: float
+
+
 @dataclass(frozen=True)
 class ProcessContext:
     """Everything a process of the box needs from outside.
@@ -64,6 +71,7 @@ class ProcessContext:
         start_ns: CLOCK_MONOTONIC shared by all processes of one run; sources count their frames from it.
         bus: open session.
         stop: set when the process shall end.
+        resources: measures this process; every process reports the result in its health once a second.
     """
 
     name: str
@@ -74,3 +82,4 @@ class ProcessContext:
     start_ns: int
     bus: Bus
     stop: threading.Event
+    resources: Callable[[], Resources]
