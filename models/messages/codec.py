@@ -17,7 +17,7 @@ from models.messages.observation import Observation
 
 VERSION = 1
 Message = Observation | Motion | ViewControl | Health
-MessageT = TypeVar("MessageT", Observation, Motion, ViewControl, Health)
+MessageT = TypeVar("MessageT", bound=Message)
 
 _TYPES: dict[int, type] = {1: Observation, 2: Motion, 3: ViewControl, 4: Health}
 _CODES = {kind: code for code, kind in _TYPES.items()}

@@ -1,0 +1,93 @@
+# Two commands matter: `make run` and `make test`. Each installs what it needs first; a second start checks stamps only.
+SHELL := /bin/bash
+.DELETE_ON_ERROR:
+MAKEFLAGS += --no-builtin-rules
+
+SOURCE ?= footage
+DATA   ?= build
+SITE   ?= deploy/sites/$(SOURCE)/site.toml
+
+VENV   := .venv
+PYTHON := $(VENV)/bin/python
+WEB    := services/tablet/web
+export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+export NUMBA_CACHE_DIR := $(CURDIR)/$(DATA)/kernels
+
+.PHONY: help run test check setup networks footage web kernels lock clean distclean bench-box bench-footage
+
+help: ## Show this list
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
+
+run: setup ## Start KineBox on the built-in footage and print the address of the page
+	@exec kinebox run --site $(SITE) --data $(DATA)
+
+test: setup ## Every test: unit, property, golden, real sockets and processes, the page in Chromium
+	@$(MAKE) --no-print-directory lint
+	cd $(WEB) && npm test
+	$(PYTHON) -m pytest
+
+check: $(VENV)/.ready ## Formatting, types, import boundaries and the fast tests; under a minute
+	@$(MAKE) --no-print-directory lint
+	$(PYTHON) -m pytest -q -m "not slow and not browser"
+
+.PHONY: lint
+lint: $(VENV)/.ready
+	ruff format --check .
+	ruff check .
+	lint-imports
+	mypy
+
+setup: $(VENV)/.ready networks footage web kernels ## Install everything that the two commands need
+
+$(VENV)/.ready: requirements.lock pyproject.toml deploy/setup/check-machine
+	@deploy/setup/check-machine
+	@echo "Installing Python packages (about 60 s) ..."
+	@python3 -m venv $(VENV)
+	@$(VENV)/bin/pip install --disable-pip-version-check --retries 10 --require-hashes -r requirements.lock
+	@$(VENV)/bin/pip install --disable-pip-version-check --quiet --no-deps --no-build-isolation --editable .
+	@touch $@
+
+networks: $(DATA)/networks/installed.json ## Fetch the networks' weights and convert them
+$(DATA)/networks/installed.json: models/networks/manifest.toml $(wildcard models/networks/build/*.py) | $(VENV)/.ready
+	@$(PYTHON) -m models.networks.build.install --data $(DATA)
+	@touch $@
+
+footage: $(DATA)/footage/installed.json ## Fetch and prepare the built-in footage
+$(DATA)/footage/installed.json: $(wildcard edge/footage/*.py) | $(VENV)/.ready
+	@$(PYTHON) -m edge.footage.prepare --data $(DATA)
+	@touch $@
+
+web: $(WEB)/dist/index.html ## Build the tablet's page
+$(WEB)/node_modules/.ready: $(WEB)/package-lock.json | $(VENV)/.ready
+	@echo "Installing the page's packages ..."
+	@cd $(WEB) && npm ci --no-audit --no-fund --loglevel=error
+	@touch $@
+$(WEB)/dist/index.html: $(WEB)/node_modules/.ready $(WEB)/index.html $(shell find $(WEB)/src -type f 2>/dev/null)
+	@cd $(WEB) && npm run --silent build
+	@touch $@
+
+kernels: $(DATA)/kernels/.ready ## Compile the numerical kernels, so that no live frame waits for it
+$(DATA)/kernels/.ready: $(wildcard services/fusion/*.py) | $(VENV)/.ready
+	@mkdir -p $(@D)
+	@echo "Compiling numerical kernels ..."
+	@$(PYTHON) -m services.fusion.build.compile
+	@touch $@
+
+bench-box: setup ## Live rate, latency, CPU and memory of the whole box, 300 s and at half the CPU
+	$(PYTHON) -m tests.bench.box --site $(SITE) --data $(DATA)
+
+bench-footage: setup ## Accuracy on the built-in footage, beside Pose2Sim on the same keypoints
+	$(PYTHON) -m tests.bench.footage --data $(DATA)
+
+lock: ## Compile requirements.lock anew after a change of pyproject.toml
+	$(PYTHON) -m venv build/lock && build/lock/bin/pip install --quiet uv
+	build/lock/bin/uv pip compile pyproject.toml --extra web --extra dev --universal --python-version 3.11 \
+	  --generate-hashes --no-emit-index-url --no-header --no-annotate --quiet -o requirements.lock
+
+clean: ## Remove what was built, but not the downloads' results
+	rm -rf $(WEB)/dist $(DATA)/kernels $(DATA)/bench $(DATA)/logs .mypy_cache .ruff_cache .pytest_cache
+
+distclean: clean ## Remove everything that is not in the repository
+	rm -rf $(VENV) $(DATA) $(WEB)/node_modules

@@ -1,0 +1,119 @@
+"""The wire format: what is on the bus today must be readable tomorrow, and rubbish must be refused with a reason."""
+
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+
+from models.messages import codec
+from models.messages.control import CropPrediction, ViewControl
+from models.messages.health import CameraHealth, FusionHealth, Health
+from models.messages.motion import CameraUse, Motion
+from models.messages.observation import Crop, Observation, Person
+
+GOLDEN = Path(__file__).parents[1] / "golden/codec"
+
+
+def examples() -> dict[str, codec.Message]:
+    ramp = np.arange(17, dtype=np.float32)
+    person = Person(
+        track=7,
+        crop=Crop(360.5, 640.25, 512.0, -0.125),
+        keypoints_px=np.stack((10 * ramp, 20 * ramp + 0.5), axis=1),
+        sigma_px=(1 + ramp / 8).astype(np.float32),
+        score=(ramp / 16).astype(np.float32),
+    )
+    motion = Motion(
+        kind="smooth",
+        sequence=12,
+        epoch=3,
+        t_ns=10**15 + 1,
+        t_newest_ns=10**15 + 2,
+        t_published_ns=10**15 + 3,
+        joints_m=np.stack((ramp / 10, -ramp / 10, ramp / 16), axis=1),
+        covariance_m2=np.broadcast_to(np.eye(3, dtype=np.float32) * 1e-4, (17, 3, 3)).copy(),
+        states=(np.arange(17) % 3).astype(np.uint8),
+        views=(np.arange(17) % 16).astype(np.uint32),
+        cameras=(CameraUse("cam01", True, 33.5), CameraUse("cam02", False, 0.0)),
+    )
+    return {
+        "observation": Observation("cam01", 2, 41, 17, 10**15, 10**15 + 5, "thunder", (person,)),
+        "observation_nobody": Observation("cam-2", 0, 0, 0, 1, 2, "lightning", ()),
+        "motion": motion,
+        "control": ViewControl("cam01", 5, 10**15, 10.0, 25_000_000, "thunder", False, CropPrediction(person.crop, 9, 1.5, -2.5)),
+        "control_search": ViewControl("cam01", 6, 10**15, 5.0, 0, "lightning", True, None),
+        "health": Health(
+            "edge-cam01", 4711, 10**15, "degraded", "slow", 0.25, 210.5,
+            camera=CameraHealth("cam01", 30.0, 9.9, 10.0, 4, 12.5, "thunder", {"decode": 4.5, "pose": 24.0}),
+            fusion=FusionHealth(30.0, 1.25, 0.8, 3, "found"),
+        ),
+    }  # fmt: skip
+
+
+def equal(a: codec.Message, b: codec.Message) -> bool:
+    return bool(codec.encode(a) == codec.encode(b))
+
+
+@pytest.mark.parametrize("name", examples())
+def test_a_message_written_by_an_earlier_version_is_still_read(name: str) -> None:
+    message = examples()[name]
+    stored = (GOLDEN / f"{name}.bin").read_bytes()
+    assert equal(codec.decode(stored, type(message)), message)
+
+
+@pytest.mark.parametrize("name", examples())
+def test_the_bytes_of_this_version_have_not_changed_without_a_new_version(name: str) -> None:
+    assert codec.encode(examples()[name]) == (GOLDEN / f"{name}.bin").read_bytes()
+
+
+@pytest.mark.parametrize("name", examples())
+def test_every_truncation_is_refused(name: str) -> None:
+    message = examples()[name]
+    data = codec.encode(message)
+    for length in range(len(data)):
+        with pytest.raises(codec.CodecError):
+            codec.decode(data[:length], type(message))
+
+
+def test_another_version_and_another_type_are_named() -> None:
+    data = codec.encode(examples()["motion"])
+    with pytest.raises(codec.CodecError, match="version 9"):
+        codec.decode(b"\x09" + data[1:], Motion)
+    with pytest.raises(codec.CodecError, match="a Motion where Observation belongs"):
+        codec.decode(data, Observation)
+    with pytest.raises(codec.CodecError, match="unknown type 200"):
+        codec.decode(bytes((data[0], 200)) + data[2:], Motion)
+
+
+@pytest.mark.parametrize(
+    ("keypoints", "reason"),
+    [
+        (np.zeros((16, 2), np.float32), r"\(16, 2\)"),
+        (np.zeros((17, 2), np.float64), "float64"),
+        (np.full((17, 2), np.nan, np.float32), "not finite"),
+    ],
+)
+def test_an_array_of_wrong_shape_dtype_or_value_is_refused_by_the_reader(keypoints: np.ndarray, reason: str) -> None:
+    class Loose(msgspec.Struct):
+        track: int
+        crop: Crop
+        keypoints_px: np.ndarray
+        sigma_px: np.ndarray
+        score: np.ndarray
+
+    ones = np.ones(17, np.float32)
+    good = examples()["observation"]
+    assert isinstance(good, Observation)
+    fields = {name: getattr(good, name) for name in Observation.__struct_fields__}
+    fields["persons"] = [Loose(1, Crop(0, 0, 1), keypoints, ones, ones)]
+    data = codec.encode(good)[:2] + codec._ENCODER.encode(fields)
+    with pytest.raises(codec.CodecError, match=reason):
+        codec.decode(data, Observation)
+
+
+def test_a_decoded_array_can_be_written_to() -> None:
+    good = examples()["observation"]
+    decoded = codec.decode(codec.encode(good), Observation)
+    decoded.persons[0].keypoints_px[0, 0] = 5.0
+    assert decoded.persons[0].keypoints_px[0, 0] == 5.0

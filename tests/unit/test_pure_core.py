@@ -1,0 +1,77 @@
+"""The core must run where there is no bus, no camera, no network session and no clock."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+BLOCKED = ("zenoh", "cv2", "av", "onnxruntime", "fastapi", "uvicorn", "openvino", "depthai", "websockets", "onnx", "psutil")
+CLOCKS = {
+    "time",
+    "perf_counter",
+    "perf_counter_ns",
+    "monotonic",
+    "monotonic_ns",
+    "time_ns",
+    "process_time",
+    "now",
+    "utcnow",
+    "today",
+}
+
+
+def pure_files() -> list[Path]:
+    packages = [ROOT / "models", ROOT / "services/fusion", ROOT / "services/calibration", ROOT / "services/evaluation"]
+    files = [file for package in packages for file in sorted(package.rglob("*.py"))]
+    return [file for file in files if file.name != "process.py" or file.parent.name == "models"]
+
+
+def is_build_time(file: Path) -> bool:
+    return "build" in file.relative_to(ROOT).parts
+
+
+PURE = [file for file in pure_files() if not is_build_time(file)]
+
+
+def test_every_pure_module_imports_with_the_outside_world_blocked() -> None:
+    modules = [".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__") for file in PURE]
+    program = (
+        "import sys, importlib\n"
+        f"for name in {BLOCKED!r}: sys.modules[name] = None\n"
+        f"for name in {modules!r}: importlib.import_module(name)\n"
+    )
+    result = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stderr
+
+
+@pytest.mark.parametrize("file", PURE, ids=lambda file: str(file.relative_to(ROOT)))
+def test_pure_module_reads_no_clock_and_opens_no_file(file: Path) -> None:
+    offences = []
+    for node in ast.walk(ast.parse(file.read_text())):
+        if isinstance(node, ast.Call):
+            called = node.func
+            if isinstance(called, ast.Name) and called.id in {"open", "print", "input"}:
+                offences.append(f"line {node.lineno}: {called.id}()")
+            if isinstance(called, ast.Attribute) and called.attr in CLOCKS | {
+                "read_bytes",
+                "read_text",
+                "write_bytes",
+                "write_text",
+            }:
+                offences.append(f"line {node.lineno}: .{called.attr}()")
+    assert offences == []
+
+
+@pytest.mark.parametrize("file", [f for f in PURE if "models" in f.parts], ids=lambda file: str(file.relative_to(ROOT)))
+def test_models_import_only_numpy_msgspec_and_the_standard_library(file: Path) -> None:
+    allowed = {"models", "numpy", "msgspec"} | set(sys.stdlib_module_names)
+    imported = set()
+    for node in ast.walk(ast.parse(file.read_text())):
+        if isinstance(node, ast.Import):
+            imported |= {alias.name.split(".")[0] for alias in node.names}
+        if isinstance(node, ast.ImportFrom):
+            imported.add((node.module or "").split(".")[0])
+    assert imported <= allowed
