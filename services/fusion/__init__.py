@@ -1,0 +1,1 @@
+"""From observations of several cameras to joints in 3D, live and smooth."""

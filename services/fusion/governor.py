@@ -1,0 +1,171 @@
+"""The governor: how often, and with which network, every camera is looked at, given the CPU there is.
+
+Two cores cannot run the large network on four cameras at 30 Hz, and a school box is slower still. The governor walks a
+ladder of levels. It predicts what each level would cost from what an inference was measured to cost, takes the best
+level that fits, and steps down at once when the cameras report that they fall behind, whatever the prediction said. All cameras get
+the same rate, and places in the turn spread evenly, so that their inferences do not collide.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+from models.messages.control import PoseNetwork
+from models.messages.health import CameraHealth
+
+
+@dataclass(frozen=True)
+class Level:
+    """One rung of the ladder."""
+
+    rate_hz: float
+    network: PoseNetwork
+
+
+LADDER: Final = (
+    Level(30.0, "thunder"),
+    Level(15.0, "thunder"),
+    Level(10.0, "thunder"),
+    Level(10.0, "lightning"),
+    Level(5.0, "lightning"),
+)
+"""Best first. A large network at 10 Hz beats a small one at 15: after smoothing, half the rate costs 13 % of accuracy, the
+small network's noise 60 % (measured on simulated throws; see docs/decisions/0003-governor.md)."""
+
+START: Final = 2
+_RELATIVE_COST: Final = {"thunder": 1.0, "lightning": 0.35}
+_PATIENCE_S: Final = 5.0
+_FIRST_PENALTY_S: Final = 15.0
+_LONGEST_PENALTY_S: Final = 240.0
+_SHORTFALL: Final = 0.85
+_SETTLING_S: Final = 2.5
+
+
+@dataclass(frozen=True)
+class Load:
+    """What was measured over the last second.
+
+    Attributes:
+        granted_cores: CPU that the box may use.
+        used_cores: CPU in use on what is granted, by the box and by others.
+        cameras: the newest word of every camera that is alive.
+    """
+
+    granted_cores: float
+    used_cores: float
+    cameras: Sequence[CameraHealth]
+
+
+@dataclass(frozen=True)
+class GovernorState:
+    """Where on the ladder, since when, and which rungs are not to be tried again before their time."""
+
+    level: int = START
+    since_ns: int = 0
+    ceiling: int = 0
+    ceiling_until_ns: int = 0
+    penalty_s: float = _FIRST_PENALTY_S
+    cost_ms: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def current(self) -> Level:
+        """The rung in force."""
+        return LADDER[self.level]
+
+
+def step(state: GovernorState, load: Load, t_ns: int, max_rate_hz: float, cpu_target: float) -> GovernorState:
+    """Decide anew, about once a second.
+
+    Args:
+        state: the last decision.
+        load: what was measured since.
+        t_ns: CLOCK_MONOTONIC now.
+        max_rate_hz: rungs above this rate are never taken.
+        cpu_target: share of `granted_cores` that may be filled.
+    """
+    state = _learn_cost(state, load)
+    best = next(index for index, level in enumerate(LADDER) if level.rate_hz <= max_rate_hz)
+    if state.level < best:
+        return _move(state, best, t_ns)
+    settled_s = (t_ns - state.since_ns) * 1e-9
+    if not load.cameras or settled_s < _SETTLING_S:
+        return state
+    if _falls_behind(state, load):
+        return _step_down(state, t_ns)
+    if t_ns >= state.ceiling_until_ns:
+        state = replace(state, ceiling=0)
+    wanted = _best_affordable(state, load, max(best, state.ceiling), cpu_target)
+    if wanted > state.level:
+        return _move(state, state.level + 1, t_ns)
+    if wanted < state.level and settled_s >= _PATIENCE_S:
+        return _move(state, state.level - 1, t_ns)
+    if settled_s > _LONGEST_PENALTY_S:
+        state = replace(state, penalty_s=_FIRST_PENALTY_S)
+    return state
+
+
+def turn_offset_ns(position: int, cameras: int, rate_hz: float) -> int:
+    """A camera's place in the turn: `ViewControl.offset_ns` for camera `position` of `cameras`."""
+    return round(position / cameras / rate_hz * 1e9)
+
+
+def predicted_cores(state: GovernorState, load: Load, level: Level) -> float:
+    """CPU that would be in use on that rung: what is in use now, less today's inferences, plus that rung's."""
+    now = sum(camera.fresh_hz * _cost_ms(state, camera.network) for camera in load.cameras) / 1e3
+    then = len(load.cameras) * level.rate_hz * _cost_ms(state, level.network) / 1e3
+    return max(load.used_cores - now, 0.0) + then
+
+
+def _best_affordable(state: GovernorState, load: Load, first: int, cpu_target: float) -> int:
+    budget = load.granted_cores * cpu_target
+    for index in range(first, len(LADDER)):
+        # To climb, a rung must fit with room to spare, or a load near the limit would make the governor swing.
+        margin = 0.92 if index < state.level else 1.05
+        if predicted_cores(state, load, LADDER[index]) <= budget * margin:
+            return index
+    return len(LADDER) - 1
+
+
+def _falls_behind(state: GovernorState, load: Load) -> bool:
+    wanted = state.current.rate_hz
+    slowest_source = min(camera.source_hz for camera in load.cameras)
+    reachable = min(wanted, slowest_source)
+    # One slow camera may have trouble of its own; the CPU is short when they are slow together.
+    slow = [camera for camera in load.cameras if camera.target_hz == wanted and camera.fresh_hz < _SHORTFALL * reachable]
+    return reachable > 0 and 2 * len(slow) >= len(load.cameras)
+
+
+def _step_down(state: GovernorState, t_ns: int) -> GovernorState:
+    if state.level == len(LADDER) - 1:
+        return state
+    lowered = _move(state, state.level + 1, t_ns)
+    return replace(
+        lowered,
+        ceiling=lowered.level,
+        ceiling_until_ns=t_ns + round(state.penalty_s * 1e9),
+        penalty_s=min(2 * state.penalty_s, _LONGEST_PENALTY_S),
+    )
+
+
+def _move(state: GovernorState, level: int, t_ns: int) -> GovernorState:
+    return replace(state, level=level, since_ns=t_ns)
+
+
+def _learn_cost(state: GovernorState, load: Load) -> GovernorState:
+    costs = dict(state.cost_ms)
+    for network in {camera.network for camera in load.cameras}:
+        measured = [sum(camera.stage_ms.values()) for camera in load.cameras if camera.network == network and camera.fresh_hz > 0]
+        if measured:
+            mean = sum(measured) / len(measured)
+            costs[network] = mean if network not in costs else 0.7 * costs[network] + 0.3 * mean
+    return replace(state, cost_ms=tuple(sorted(costs.items())))
+
+
+def _cost_ms(state: GovernorState, network: str) -> float:
+    costs = dict(state.cost_ms)
+    if network in costs:
+        return costs[network]
+    for other, measured in costs.items():
+        if other in _RELATIVE_COST and network in _RELATIVE_COST:
+            return measured * _RELATIVE_COST[network] / _RELATIVE_COST[other]
+    return 0.0

@@ -1,0 +1,75 @@
+"""How much CPU this box was granted (affinity and control-group quota) and how much of it is in use, by whomever."""
+
+import os
+import time
+from pathlib import Path
+
+import psutil
+
+_CGROUP = Path("/sys/fs/cgroup")
+
+
+class CpuMeter:
+    """Cores granted to this process's control group, and cores in use on them since the last reading."""
+
+    def __init__(self, cgroup: Path | None = None) -> None:
+        self._cpus = sorted(os.sched_getaffinity(0))
+        self._cgroup = cgroup if cgroup is not None else _own_cgroup()
+        self._quota_cores = _quota_cores(self._cgroup)
+        self._read_at = time.monotonic()
+        self._usage_s = _usage_s(self._cgroup)
+        psutil.cpu_percent(percpu=True)
+
+    @property
+    def granted_cores(self) -> float:
+        """CPU seconds a second that may be used."""
+        cores = float(len(self._cpus))
+        return cores if self._quota_cores is None else min(cores, self._quota_cores)
+
+    def used_cores(self) -> float:
+        """CPU seconds a second in use since the call before, on the granted cores; under a quota, by those who share it."""
+        now = time.monotonic()
+        percent = psutil.cpu_percent(percpu=True)
+        on_cpus = sum(percent[cpu] for cpu in self._cpus if cpu < len(percent)) / 100
+        elapsed, self._read_at = now - self._read_at, now
+        usage_s = _usage_s(self._cgroup)
+        before, self._usage_s = self._usage_s, usage_s
+        if self._quota_cores is None or usage_s is None or before is None or elapsed <= 0:
+            return min(on_cpus, self.granted_cores)
+        # Whichever is closer to its limit is what limits us.
+        by_quota = (usage_s - before) / elapsed
+        return max(by_quota, on_cpus - (len(self._cpus) - self.granted_cores))
+
+
+def _own_cgroup() -> Path | None:
+    try:
+        line = Path("/proc/self/cgroup").read_text().splitlines()[-1]
+    except (OSError, IndexError):
+        return None
+    folder = _CGROUP / line.split(":")[-1].lstrip("/")
+    return folder if folder.is_dir() else None
+
+
+def _quota_cores(cgroup: Path | None) -> float | None:
+    """The smallest `cpu.max` from this control group up to the root; None where nothing is limited."""
+    smallest: float | None = None
+    while cgroup is not None and cgroup != cgroup.parent:
+        try:
+            quota, period = (cgroup / "cpu.max").read_text().split()
+            if quota != "max":
+                cores = int(quota) / int(period)
+                smallest = cores if smallest is None else min(smallest, cores)
+        except (OSError, ValueError):
+            pass
+        cgroup = cgroup.parent if cgroup != _CGROUP else None
+    return smallest
+
+
+def _usage_s(cgroup: Path | None) -> float | None:
+    if cgroup is None:
+        return None
+    try:
+        lines = (cgroup / "cpu.stat").read_text().splitlines()
+        return next(int(line.split()[1]) for line in lines if line.startswith("usage_usec")) * 1e-6
+    except (OSError, StopIteration, ValueError):
+        return None

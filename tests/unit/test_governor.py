@@ -1,0 +1,104 @@
+"""The governor on a simulated box: it must find the best rate that the CPU carries, keep it, and never swing."""
+
+import itertools
+from dataclasses import dataclass
+
+import pytest
+
+from models.messages.health import CameraHealth
+from services.fusion import governor
+from services.fusion.governor import LADDER, GovernorState, Load
+
+COST_MS = {"thunder": 28.0, "lightning": 10.0}
+
+
+@dataclass
+class Box:
+    """A machine whose cameras get what the CPU allows: demand above capacity lowers every camera's rate alike."""
+
+    cores: float
+    base_cores: float = 0.4
+    slowness: float = 1.0
+    cameras: int = 4
+
+    def second(self, state: GovernorState) -> Load:
+        level = state.current
+        cost_ms = COST_MS[level.network] * self.slowness
+        wanted = self.cameras * level.rate_hz * cost_ms / 1e3
+        share = min(1.0, max(self.cores - self.base_cores, 0.0) / wanted)
+        health = CameraHealth("cam", 30.0, level.rate_hz * share, level.rate_hz, 0, 5.0, level.network, {"pose": cost_ms})
+        return Load(self.cores, min(self.cores, self.base_cores + wanted * share), [health] * self.cameras)
+
+
+def run(box: Box, seconds: int, state: GovernorState | None = None, start_s: int = 0, **limits: float) -> list[GovernorState]:
+    limits = {"max_rate_hz": 30.0, "cpu_target": 0.85} | limits
+    states = [state or GovernorState()]
+    for second in range(start_s + 1, start_s + seconds + 1):
+        states.append(governor.step(states[-1], box.second(states[-1]), second * 10**9, **limits))
+    return states
+
+
+@pytest.mark.parametrize(
+    ("cores", "slowness", "expected"),
+    [
+        (8.0, 1.0, (30.0, "thunder")),
+        (3.0, 1.0, (15.0, "thunder")),
+        (2.0, 1.0, (10.0, "thunder")),
+        (1.0, 1.0, (10.0, "lightning")),
+        (2.0, 3.0, (10.0, "lightning")),
+        (1.0, 3.0, (5.0, "lightning")),
+    ],
+)
+def test_the_best_rate_that_fits_is_found_and_kept(cores: float, slowness: float, expected: tuple[float, str]) -> None:
+    states = run(Box(cores, slowness=slowness), 600)
+    last = [(state.current.rate_hz, state.current.network) for state in states[-120:]]
+    assert set(last) == {expected}
+
+
+def test_a_box_that_becomes_busy_steps_down_and_climbs_again_when_it_is_free() -> None:
+    calm = run(Box(2.0), 60)
+    busy = run(Box(2.0, base_cores=1.5), 60, calm[-1], 60)
+    free = run(Box(2.0), 300, busy[-1], 120)
+    assert LADDER[busy[-1].level].network == "lightning"
+    assert free[-1].level == calm[-1].level
+
+
+def test_a_rung_that_failed_is_tried_less_and_less_often() -> None:
+    # The prediction is too hopeful here: the box says that it has more CPU than it has.
+    class Boastful(Box):
+        def second(self, state: GovernorState) -> Load:
+            load = super().second(state)
+            return Load(4.0, load.used_cores, load.cameras)
+
+    states = run(Boastful(1.7), 1200)
+    climbs = [second for second, (a, b) in enumerate(itertools.pairwise(states)) if b.level < a.level]
+    assert len(climbs) <= 12
+    gaps = [b - a for a, b in itertools.pairwise(climbs)]
+    assert gaps[-1] > 4 * gaps[0]
+
+
+def test_the_rate_never_exceeds_what_the_site_allows() -> None:
+    assert all(state.current.rate_hz <= 10 for state in run(Box(16.0), 100, max_rate_hz=10.0)[1:])
+
+
+def test_one_slow_camera_does_not_slow_the_others() -> None:
+    state = GovernorState()
+    load = Box(2.0).second(state)
+    ill = CameraHealth("cam", 30.0, 2.0, 10.0, 50, 90.0, "thunder", {"pose": 28.0})
+    moved = governor.step(state, Load(2.0, 1.4, [*load.cameras[:3], ill]), 10**10, 30.0, 0.85)
+    assert moved.level == state.level
+
+
+def test_a_slow_source_is_not_taken_for_a_short_cpu() -> None:
+    slow = CameraHealth("cam", 8.0, 8.0, 10.0, 0, 5.0, "thunder", {"pose": 28.0})
+    moved = governor.step(GovernorState(), Load(2.0, 1.4, [slow] * 4), 10**10, 10.0, 0.85)
+    assert moved.level == governor.START
+
+
+def test_no_camera_alive_changes_nothing() -> None:
+    assert governor.step(GovernorState(), Load(2.0, 0.1, []), 10**10, 30.0, 0.85) == GovernorState()
+
+
+def test_the_cameras_take_turns_evenly() -> None:
+    offsets = [governor.turn_offset_ns(position, 4, 10.0) for position in range(4)]
+    assert offsets == [0, 25_000_000, 50_000_000, 75_000_000]
