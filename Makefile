@@ -78,7 +78,13 @@ $(DATA)/kernels/.ready: $(wildcard services/fusion/*.py) | $(VENV)/.ready
 bench-box: setup ## Live rate, latency, CPU and memory of the whole box, 300 s and at half the CPU
 	$(PYTHON) -m tests.bench.box --site $(SITE) --data $(DATA)
 
-bench-footage: setup ## Accuracy on the built-in footage, beside Pose2Sim on the same keypoints
+build/peers/%/.ready: tests/bench/peers/%/requirements.lock | $(VENV)/.ready
+	@echo "Installing $* in an environment of its own (some minutes) ..."
+	@python3 -m venv $(@D)
+	@$(@D)/bin/pip install --disable-pip-version-check --quiet --require-hashes -r $<
+	@touch $@
+
+bench-footage: setup build/peers/pose2sim/.ready ## Accuracy on the built-in footage, beside Pose2Sim on the same keypoints
 	$(PYTHON) -m tests.bench.footage --data $(DATA)
 
 lock: ## Compile requirements.lock anew after a change of pyproject.toml
