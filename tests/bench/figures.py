@@ -50,5 +50,4 @@ def peak_speed_m_s(positions_m: Float, rate_hz: float, half_span: int = 2) -> fl
 
 def inside(points_px: Float, box_px: Float) -> Bool:
     """Which points (..., 2) lie in a box (x0, y0, x1, y1)."""
-    result: Bool = ((points_px >= box_px[:2]) & (points_px <= box_px[2:])).all(axis=-1)
-    return result
+    return np.asarray(((points_px >= box_px[:2]) & (points_px <= box_px[2:])).all(axis=-1))
