@@ -1,0 +1,114 @@
+"""The tablets that watch: one session each, none of which can hold up another or the box."""
+
+import asyncio
+from collections.abc import Callable
+
+from pydantic import ValidationError
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from services.tablet.credit import CreditError, NewestFirst
+from services.tablet.messages import CLIENT_MESSAGE, Ack, Ping, Pong
+
+MOTION_CREDIT = 2
+STATUS_CREDIT = 1
+MAX_CLIENTS = 50
+
+
+class Session:
+    """One connected client: two lanes to it, its acknowledgements and pings back."""
+
+    def __init__(self, socket: WebSocket, clock_ns: Callable[[], int], reject: Callable[[], None]) -> None:
+        self._socket = socket
+        self._clock_ns = clock_ns
+        self._reject = reject
+        self._motions: NewestFirst[bytes] = NewestFirst(MOTION_CREDIT)
+        self._statuses: NewestFirst[str] = NewestFirst(STATUS_CREDIT)
+        self._ping: Ping | None = None
+        self._work = asyncio.Event()
+
+    def offer_motion(self, frame: bytes) -> None:
+        """Have a packed motion frame sent as soon as the client has credit."""
+        self._motions.offer(frame)
+        self._work.set()
+
+    def offer_status(self, text: str) -> None:
+        """Have a status sent as soon as the client has credit."""
+        self._statuses.offer(text)
+        self._work.set()
+
+    async def run(self) -> None:
+        """Serve the client until it leaves. Its end is the end of the receiving side; sending is cancelled with it."""
+        sender = asyncio.create_task(self._send())
+        try:
+            while True:
+                message = await self._socket.receive()
+                if message["type"] == "websocket.disconnect":
+                    return
+                self._receive(message.get("text"))
+        finally:
+            sender.cancel()
+            await asyncio.gather(sender, return_exceptions=True)
+
+    def _receive(self, text: str | None) -> None:
+        try:
+            message = CLIENT_MESSAGE.validate_json(text or "")
+            if isinstance(message, Ack):
+                self._motions.acknowledge(message.motions)
+                self._statuses.acknowledge(message.statuses)
+            else:
+                self._ping = message
+        except (ValidationError, CreditError):
+            self._reject()
+        self._work.set()
+
+    async def _send(self) -> None:
+        try:
+            while True:
+                await self._work.wait()
+                self._work.clear()
+                await self._send_what_may_go()
+        except (WebSocketDisconnect, RuntimeError):
+            return  # the client left between two sends; `run` learns of it too
+
+    async def _send_what_may_go(self) -> None:
+        if self._ping is not None:
+            ping, self._ping = self._ping, None
+            await self._socket.send_text(Pong(id=ping.id, box_time_us=self._clock_ns() // 1000).model_dump_json())
+        # Each take comes directly before its send: what waits may be replaced while an earlier send is held up.
+        while (frame := self._motions.take()) is not None:
+            await self._socket.send_bytes(frame)
+        if (text := self._statuses.take()) is not None:
+            await self._socket.send_text(text)
+
+
+class Audience:
+    """All sessions. Used from the event loop's thread only."""
+
+    def __init__(self) -> None:
+        self._sessions: set[Session] = set()
+
+    def __len__(self) -> int:
+        return len(self._sessions)
+
+    @property
+    def full(self) -> bool:
+        """Whether no further client may join."""
+        return len(self._sessions) >= MAX_CLIENTS
+
+    async def attend(self, session: Session) -> None:
+        """Serve one client until it leaves."""
+        self._sessions.add(session)
+        try:
+            await session.run()
+        finally:
+            self._sessions.discard(session)
+
+    def show_motion(self, frame: bytes) -> None:
+        """Offer a motion frame to everyone."""
+        for session in self._sessions:
+            session.offer_motion(frame)
+
+    def show_status(self, text: str) -> None:
+        """Offer a status to everyone."""
+        for session in self._sessions:
+            session.offer_status(text)

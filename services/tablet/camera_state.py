@@ -1,0 +1,88 @@
+"""How a camera is, from what its process says and when it last said it."""
+
+from dataclasses import dataclass
+
+from models.messages.health import CameraHealth, Health
+from services.tablet.messages import CameraReason, CameraState, CameraStatus
+
+START_GRACE_NS = 20_000_000_000
+"""So long may a camera be starting after its process, or this server, came: networks are loaded."""
+SILENT_AFTER_NS = 3_000_000_000
+"""A process says how it is every second; three missed are no accident."""
+BEHIND_SHARE = 0.7
+"""Below this share of the inferences asked for, a camera is slow."""
+SPARSE_HZ = 8.0
+"""Below so many inferences a second, fast movement (a throw lasts 0.3 s) falls between the pictures."""
+BACKLOG_MS = 250.0
+"""A frame older than this when its turn came shows a figure that visibly trails."""
+
+
+@dataclass(frozen=True)
+class HeardHealth:
+    """A process's newest health and the CLOCK_MONOTONIC of its arrival."""
+
+    health: Health
+    arrived_ns: int
+
+
+@dataclass(frozen=True)
+class Presence:
+    """Whether a process holds its token on the bus (None: not seen yet), and since when (CLOCK_MONOTONIC)."""
+
+    alive: bool | None
+    since_ns: int
+
+
+def camera_status(name: str, heard: HeardHealth | None, presence: Presence, used: bool, now_ns: int) -> CameraStatus:
+    """Judge one camera.
+
+    Args:
+        name: the camera.
+        heard: its process's newest health; None if there was none since the process came.
+        presence: its process on the bus.
+        used: the newest motion rests on it too.
+        now_ns: CLOCK_MONOTONIC.
+    """
+    state, reason = _judge(heard, presence, now_ns)
+    camera = heard.health.camera if heard else None
+    measured = camera if state != "lost" else None  # the last figures of a lost camera would look like life
+    return CameraStatus(
+        name=name,
+        state=state,
+        reason=reason,
+        detail=heard.health.reason if heard else "",
+        source_hz=measured.source_hz if measured else None,
+        fresh_hz=measured.fresh_hz if measured else None,
+        target_hz=measured.target_hz if measured else None,
+        network=measured.network if measured else None,
+        backlog_ms=measured.backlog_ms if measured else None,
+        skipped=camera.skipped if camera else None,
+        used=used and state != "lost",
+    )
+
+
+def _judge(heard: HeardHealth | None, presence: Presence, now_ns: int) -> tuple[CameraState, CameraReason]:
+    if presence.alive is False:
+        return "lost", "process_gone"
+    if heard is None or heard.health.camera is None:
+        return ("starting", "starting") if now_ns - presence.since_ns < START_GRACE_NS else ("lost", "never_seen")
+    if now_ns - heard.arrived_ns > SILENT_AFTER_NS:
+        return "lost", "silent"
+    if heard.health.state == "failed":
+        return "lost", "failed"
+    return _judge_rates(heard.health.camera, heard.health.state == "degraded")
+
+
+def _judge_rates(camera: CameraHealth, degraded: bool) -> tuple[CameraState, CameraReason]:
+    if camera.source_hz <= 0:
+        return "lost", "no_frames"
+    if camera.target_hz <= 0:
+        return "ok", "resting"
+    faults: tuple[tuple[bool, CameraReason], ...] = (
+        (camera.backlog_ms > BACKLOG_MS, "backlog"),
+        (camera.fresh_hz < BEHIND_SHARE * camera.target_hz, "behind"),
+        (camera.fresh_hz < SPARSE_HZ, "sparse"),
+        (degraded, "degraded"),
+    )
+    reason = next((reason for present, reason in faults if present), None)
+    return ("slow", reason) if reason else ("ok", "none")

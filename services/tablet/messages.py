@@ -1,0 +1,113 @@
+"""What the server and the page tell one another in JSON. The page's TypeScript types are generated from these models.
+
+Texts for people are made on the page, from the codes given here, so that languages can follow; only a process's own reason,
+meant for the technician, travels as text.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+CameraState = Literal["starting", "ok", "slow", "lost"]
+CameraReason = Literal[
+    "none",
+    "starting",  # not heard of yet, and the box has only just started
+    "never_seen",  # not heard of since the box started
+    "process_gone",  # its process ended
+    "silent",  # its process is there and says nothing
+    "failed",  # its process says that it failed; see `detail`
+    "no_frames",  # the source delivers nothing
+    "degraded",  # its process works less well than wished; see `detail`
+    "behind",  # fewer inferences than the governor asked for
+    "backlog",  # frames wait too long for their turn
+    "sparse",  # the governor asks for too few inferences for fast movement
+    "resting",  # the governor asks for none: other cameras see better
+]
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class CameraStatus(_Model):
+    """One camera of the room, in the order of the site file. Null is: not known."""
+
+    name: str
+    state: CameraState
+    reason: CameraReason
+    detail: Annotated[str, Field(description="the process's own words, for the technician")]
+    source_hz: float | None
+    fresh_hz: Annotated[float | None, Field(description="pose inferences a second on new frames")]
+    target_hz: Annotated[float | None, Field(description="what the governor asks for")]
+    network: str | None
+    backlog_ms: float | None
+    skipped: int | None
+    used: Annotated[bool, Field(description="part of the newest motion")]
+
+
+class ProcessStatus(_Model):
+    """One process of the box, as it last described itself. `age_s` is the age of that description."""
+
+    name: str
+    state: Literal["ok", "degraded", "failed", "silent", "gone"]
+    reason: str
+    age_s: float
+    cpu_cores: float
+    rss_mb: float
+
+
+class Latency(_Model):
+    """Milliseconds from mid-exposure of the newest observation used until the server received the motion."""
+
+    p50_ms: float
+    p95_ms: float
+
+
+class Status(_Model):
+    """The room as a whole, about twice a second."""
+
+    type: Literal["status"] = "status"
+    room: Annotated[str, Field(description="the site's name")]
+    box_time_us: Annotated[int, Field(description="CLOCK_MONOTONIC of the box")]
+    epoch: int | None
+    live_hz: Annotated[float, Field(description="motions a second that arrived in the last seconds")]
+    wished_hz: Annotated[float, Field(description="motions a second that the site file asks for")]
+    motion_age_ms: Annotated[float | None, Field(description="age of the newest observation used in a motion")]
+    latency: Latency | None
+    pupil: Literal["unknown", "searching", "found"]
+    cpu_load: Annotated[float | None, Field(description="share of the granted CPU that is in use, 0 to 1")]
+    cameras: list[CameraStatus]
+    processes: list[ProcessStatus]
+    clients: int
+    rejected_bus_messages: int
+    rejected_client_messages: int
+
+
+class Pong(_Model):
+    """Answer to a `Ping`."""
+
+    type: Literal["pong"] = "pong"
+    id: int
+    box_time_us: Annotated[int, Field(description="CLOCK_MONOTONIC of the box when it answered")]
+
+
+class Ping(_Model):
+    """The page measures the way to the box and back; only the newest is answered."""
+
+    type: Literal["ping"]
+    id: Annotated[int, Field(ge=0, lt=2**53)]
+
+
+class Ack(_Model):
+    """What the page has dealt with since it connected: motions drawn (or dropped as too old), and states shown."""
+
+    type: Literal["ack"]
+    motions: Annotated[int, Field(ge=0, lt=2**53)]
+    statuses: Annotated[int, Field(ge=0, lt=2**53)]
+
+
+ClientMessage = Annotated[Ack | Ping, Field(discriminator="type")]
+ServerMessage = Annotated[Status | Pong, Field(discriminator="type")]
+
+CLIENT_MESSAGE: TypeAdapter[Ack | Ping] = TypeAdapter(ClientMessage)
+SERVER_MESSAGE: TypeAdapter[Status | Pong] = TypeAdapter(ServerMessage)

@@ -1,0 +1,163 @@
+"""The tablet server's process: takes motions and health from the bus, serves the page."""
+
+import asyncio
+import os
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import uvicorn
+
+from models.config.site import TabletConfig
+from models.errors import UserError
+from models.messages import codec, topics
+from models.messages.health import Health
+from models.messages.motion import Motion
+from models.process import Delivery, ProcessContext, Subscription
+from services.tablet.room_state import RoomState
+from services.tablet.server import TabletServer, create_app
+
+PAGE = Path(__file__).parent / "web" / "dist"
+
+_RECEIVE_TIMEOUT_S = 0.1
+_HEALTH_PERIOD_S = 1.0
+_SHUTDOWN_S = 1
+_KEEP = 2
+_MAX_CLIENT_MESSAGE_BYTES = 4096
+
+
+def main(context: ProcessContext) -> None:
+    """Serve the page until `context.stop` is set.
+
+    Raises:
+        UserError: the page is not built, or the port cannot be listened on.
+    """
+    if not (PAGE / "index.html").is_file():
+        raise UserError("tablet: the page is not built (services/tablet/web/dist is missing); run 'make page'")
+    listener = listen(context.site.tablet)
+    site = context.site
+    cameras = tuple(camera.name for camera in site.cameras)
+    server = TabletServer(RoomState(site.name, cameras, site.fusion.live_hz, time.monotonic_ns()), time.monotonic_ns)
+    try:
+        asyncio.run(_serve(context, server, listener))
+    finally:
+        listener.close()
+
+
+def listen(config: TabletConfig) -> socket.socket:
+    """Bind the page's port, so that a port that is taken is found before anything is started.
+
+    Raises:
+        UserError: the port is taken, forbidden, or the address is none of this machine's.
+    """
+    where = f"tablet: cannot listen on {config.host} port {config.port}"
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(config.host, config.port, type=socket.SOCK_STREAM)[0]
+    except OSError as error:
+        raise UserError(f"{where}: {error.strerror}; correct 'host' under [tablet] in the site file") from error
+    listener = socket.socket(family, kind, protocol)
+    try:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(address)
+        listener.listen()
+    except OSError as error:
+        listener.close()
+        remedy = "end the program that uses it, or set another 'port' under [tablet] in the site file"
+        raise UserError(f"{where}: {error.strerror}; {remedy}") from error
+    return listener
+
+
+class _Uvicorn(uvicorn.Server):
+    """Uvicorn that leaves signals to the command line, which sets `context.stop`."""
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        yield
+
+
+async def _serve(context: ProcessContext, server: TabletServer, listener: socket.socket) -> None:
+    web = _Uvicorn(
+        uvicorn.Config(
+            create_app(server, PAGE),
+            ws_per_message_deflate=False,  # frames of 206 bytes gain nothing and cost CPU
+            ws_max_size=_MAX_CLIENT_MESSAGE_BYTES,
+            timeout_graceful_shutdown=_SHUTDOWN_S,
+            log_config=None,
+            access_log=False,
+            server_header=False,
+        )
+    )
+    loop = asyncio.get_running_loop()
+
+    def hand_over(action: Callable[[], None]) -> None:
+        loop.call_soon_threadsafe(action)
+
+    def end() -> None:
+        web.should_exit = True
+
+    def seen(topic: str, alive: bool) -> None:
+        hand_over(lambda: server.set_alive(topic.rsplit("/", 1)[-1], alive))
+
+    subscription = context.bus.subscribe(topics.motion("live"), topics.ALL_HEALTH, keep=_KEEP)
+    receiver = threading.Thread(
+        target=_receive, args=(context, subscription, server, hand_over, end), name="tablet-bus", daemon=True
+    )
+    context.bus.watch_alive(topics.ALL_ALIVE, seen)
+    context.bus.declare_alive(topics.alive(context.name))
+    receiver.start()
+    health = asyncio.create_task(_publish_health(context, server))
+    try:
+        await web.serve(sockets=[listener])
+    finally:
+        context.stop.set()
+        health.cancel()
+        await asyncio.to_thread(receiver.join)
+        subscription.close()
+
+
+def _receive(
+    context: ProcessContext,
+    subscription: Subscription,
+    server: TabletServer,
+    hand_over: Callable[[Callable[[], None]], None],
+    end: Callable[[], None],
+) -> None:
+    """Bus to event loop, in a thread of its own, until the process shall stop."""
+    while not context.stop.is_set():
+        delivery = subscription.receive(_RECEIVE_TIMEOUT_S)
+        if delivery is not None:
+            hand_over(_decoded(delivery, server))
+    hand_over(end)
+
+
+def _decoded(delivery: Delivery, server: TabletServer) -> Callable[[], None]:
+    """What the event loop shall do about a delivery; decoding happens here, in the caller's thread."""
+    try:
+        if delivery.topic == topics.motion("live"):
+            motion = codec.decode(delivery.payload, Motion)
+            return lambda: server.receive_motion(motion)
+        health = codec.decode(delivery.payload, Health)
+        return lambda: server.receive_health(health)
+    except codec.CodecError:
+        return server.reject_bus_message
+
+
+async def _publish_health(context: ProcessContext, server: TabletServer) -> None:
+    """Say how this process is, once a second."""
+    while True:
+        used = context.resources()
+        rejected = server.room.rejected_bus_messages
+        health = Health(
+            process=context.name,
+            pid=os.getpid(),
+            t_ns=time.monotonic_ns(),
+            state="degraded" if rejected else "ok",
+            reason=f"{rejected} messages on the bus could not be read" if rejected else "",
+            cpu_cores=used.cpu_cores,
+            rss_mb=used.rss_mb,
+        )
+        context.bus.publish(topics.health(context.name), codec.encode(health))
+        await asyncio.sleep(_HEALTH_PERIOD_S)

@@ -1,0 +1,150 @@
+"""What the page must know of the room: bus messages go in, a `Status` comes out.
+
+Reads no clock: every method is told the time, so that each state can be tested by saying when what was heard.
+"""
+
+import math
+from collections import deque
+from typing import Literal
+
+from models.messages.health import FusionHealth, Health
+from models.messages.motion import JointState, Motion
+from services.tablet.camera_state import SILENT_AFTER_NS, HeardHealth, Presence, camera_status
+from services.tablet.messages import CameraStatus, Latency, ProcessStatus, Status
+
+WINDOW_NS = 3_000_000_000
+"""Rates and latencies are those of the last so many nanoseconds."""
+MINIMUM_SPAN_NS = 500_000_000
+"""A rate is not divided by less than this: the first two motions would otherwise read as any rate."""
+
+
+class MotionMeter:
+    """Rate and latency of the motions that arrived within the window."""
+
+    def __init__(self) -> None:
+        self._arrivals: deque[tuple[int, float]] = deque()
+
+    def add(self, arrived_ns: int, latency_ms: float) -> None:
+        """Count one motion."""
+        self._arrivals.append((arrived_ns, latency_ms))
+        self._forget(arrived_ns)
+
+    def rate_hz(self, now_ns: int) -> float:
+        """Motions a second: over the window, or since the first of a stream that is younger."""
+        self._forget(now_ns)
+        if not self._arrivals:
+            return 0.0
+        span_ns = min(max(now_ns - self._arrivals[0][0], MINIMUM_SPAN_NS), WINDOW_NS)
+        return len(self._arrivals) * 1e9 / span_ns
+
+    def latency(self, now_ns: int) -> Latency | None:
+        """Percentiles by the nearest rank; None if nothing arrived."""
+        self._forget(now_ns)
+        ordered = sorted(latency_ms for _, latency_ms in self._arrivals)
+        if not ordered:
+            return None
+        return Latency(p50_ms=_nearest_rank(ordered, 0.50), p95_ms=_nearest_rank(ordered, 0.95))
+
+    def _forget(self, now_ns: int) -> None:
+        while self._arrivals and now_ns - self._arrivals[0][0] > WINDOW_NS:
+            self._arrivals.popleft()
+
+
+class RoomState:
+    """Everything heard so far.
+
+    Args:
+        room: the site's name.
+        cameras: names of the site's cameras, in its order.
+        wished_hz: motions a second that the site file asks for.
+        started_ns: CLOCK_MONOTONIC at the server's start.
+    """
+
+    def __init__(self, room: str, cameras: tuple[str, ...], wished_hz: float, started_ns: int) -> None:
+        self._room = room
+        self._cameras = cameras
+        self._wished_hz = wished_hz
+        self._started_ns = started_ns
+        self._health: dict[str, HeardHealth] = {}
+        self._presence: dict[str, Presence] = {}
+        self._motion: Motion | None = None
+        self._meter = MotionMeter()
+        self.rejected_bus_messages = 0
+        self.rejected_client_messages = 0
+
+    def receive_motion(self, motion: Motion, now_ns: int) -> None:
+        """A motion arrived."""
+        self._motion = motion
+        self._meter.add(now_ns, max(now_ns - motion.t_newest_ns, 0) * 1e-6)
+
+    def receive_health(self, health: Health, now_ns: int) -> None:
+        """A process said how it is."""
+        self._health[health.process] = HeardHealth(health, now_ns)
+
+    def set_alive(self, process: str, alive: bool, now_ns: int) -> None:
+        """A process joined or left the bus."""
+        before = self._presence.get(process)
+        if alive and before is not None and not before.alive:
+            self._health.pop(process, None)  # what its predecessor said is no news of this one
+        self._presence[process] = Presence(alive, now_ns)
+
+    def status(self, now_ns: int, clients: int) -> Status:
+        """The room as it is at `now_ns` (CLOCK_MONOTONIC)."""
+        fusion, motion, used = self._fusion(now_ns), self._motion, self._used(now_ns)
+        return Status(
+            room=self._room,
+            box_time_us=now_ns // 1000,
+            epoch=motion.epoch if motion else None,
+            live_hz=self._meter.rate_hz(now_ns),
+            wished_hz=self._wished_hz,
+            motion_age_ms=max(now_ns - motion.t_newest_ns, 0) * 1e-6 if motion else None,
+            latency=self._meter.latency(now_ns),
+            pupil=fusion.pupil if fusion else "unknown",
+            cpu_load=fusion.cpu_load if fusion and math.isfinite(fusion.cpu_load) else None,
+            cameras=[self._camera(name, name in used, now_ns) for name in self._cameras],
+            processes=[self._process(heard, now_ns) for _, heard in sorted(self._health.items())],
+            clients=clients,
+            rejected_bus_messages=self.rejected_bus_messages,
+            rejected_client_messages=self.rejected_client_messages,
+        )
+
+    def _camera(self, name: str, used: bool, now_ns: int) -> CameraStatus:
+        process = f"edge-{name}"
+        presence = self._presence.get(process, Presence(None, self._started_ns))
+        return camera_status(name, self._health.get(process), presence, used, now_ns)
+
+    def _gone(self, process: str) -> bool:
+        presence = self._presence.get(process)
+        return presence is not None and presence.alive is False
+
+    def _used(self, now_ns: int) -> frozenset[str]:
+        motion = self._motion
+        if motion is None or now_ns - motion.t_newest_ns > WINDOW_NS or not (motion.states == JointState.SEEN).any():
+            return frozenset()
+        return frozenset(use.camera for use in motion.cameras if use.used)
+
+    def _fusion(self, now_ns: int) -> FusionHealth | None:
+        heard = self._health.get("fusion")
+        if heard is None or now_ns - heard.arrived_ns > SILENT_AFTER_NS or self._gone("fusion"):
+            return None
+        return heard.health.fusion
+
+    def _process(self, heard: HeardHealth, now_ns: int) -> ProcessStatus:
+        health, age_ns = heard.health, now_ns - heard.arrived_ns
+        state: Literal["ok", "degraded", "failed", "silent", "gone"] = health.state
+        if self._gone(health.process):
+            state = "gone"
+        elif age_ns > SILENT_AFTER_NS:
+            state = "silent"
+        return ProcessStatus(
+            name=health.process,
+            state=state,
+            reason=health.reason,
+            age_s=age_ns * 1e-9,
+            cpu_cores=health.cpu_cores,
+            rss_mb=health.rss_mb,
+        )
+
+
+def _nearest_rank(ordered: list[float], share: float) -> float:
+    return ordered[max(math.ceil(share * len(ordered)) - 1, 0)]
