@@ -1,0 +1,1 @@
+"""Sources of pictures, one kind a file, behind the protocol in `source`."""

@@ -1,0 +1,123 @@
+"""A Motion JPEG file played as if it were a camera: in real time, every picture in order, over and over."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+import av
+
+from edge.cameras.jpeg import JpegFrame, is_whole
+from edge.cameras.source import Clock
+from models.errors import UserError
+
+_SECOND_NS = 1_000_000_000
+
+
+@dataclass(frozen=True)
+class Video:
+    """A file in memory: its pictures, compressed. A few tens of MB, so that a loop costs nothing."""
+
+    camera: str
+    size_px: tuple[int, int]
+    pictures: tuple[bytes, ...]
+
+    def frames(self) -> Iterator[JpegFrame]:
+        """Every picture once, without a clock (for benches): picture k at k seconds, as there is no rate to go by."""
+        for index in range(len(self.pictures)):
+            yield self.frame(0, index, index * _SECOND_NS)
+
+    def frame(self, epoch: int, index: int, t_mid_ns: int) -> JpegFrame:
+        """Picture `index`, stamped."""
+        return JpegFrame(self.camera, epoch, index, t_mid_ns, self.size_px, self.pictures[index])
+
+
+def load_video(path: Path, camera: str) -> Video:
+    """Read a Motion JPEG file whole.
+
+    Raises:
+        UserError: the file is missing, empty, truncated, no video, or one whose pictures do not stand alone.
+    """
+    where = f"camera '{camera}': {path}"
+    if not path.is_file():
+        raise UserError(
+            f"{where} is missing; correct `path` in the site file (the built-in footage: python -m edge.footage.prepare)"
+        )
+    if path.stat().st_size == 0:
+        raise UserError(f"{where} is empty; copy or prepare it again")
+    try:
+        with av.open(str(path)) as container:
+            if not container.streams.video:
+                raise UserError(f"{where} contains no video; give a Motion JPEG file")
+            stream = container.streams.video[0]
+            codec = stream.codec_context.name
+            size_px, announced = (stream.width, stream.height), stream.frames
+            pictures = tuple(bytes(packet) for packet in container.demux(stream) if packet.size)
+    except (av.FFmpegError, OSError) as error:
+        raise UserError(f"{where} is not a video that can be read ({error}); copy or prepare it again") from error
+    if codec != "mjpeg":
+        raise UserError(f"{where} is {codec}; only Motion JPEG is played (ffmpeg -i IN -c:v mjpeg -q:v 3 OUT.avi)")
+    whole = sum(map(is_whole, pictures))
+    if not pictures or whole < max(len(pictures), announced):
+        raise UserError(
+            f"{where} is truncated: {whole} of {max(len(pictures), announced)} pictures are whole; copy or prepare it again"
+        )
+    return Video(camera, size_px, pictures)
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """When the pictures of a looping file are due: picture m, counted over all loops, at start + offset + m / rate.
+
+    All cameras of a run share `start_ns`, so that equal files agree to the nanosecond. Rounding goes up, so that the pictures
+    of a 30 Hz file never fall just short of a 30 Hz turn (see `ViewControl`).
+    """
+
+    start_ns: int
+    offset_ns: int
+    rate_hz: float
+
+    def t_ns(self, number: int) -> int:
+        """Mid-exposure of picture `number` (0, 1, ...)."""
+        return self.start_ns + self.offset_ns + math.ceil(number * _SECOND_NS / Fraction(self.rate_hz))
+
+    def newest(self, now_ns: int) -> int:
+        """Number of the newest picture that was exposed by `now_ns`; negative before the first."""
+        return math.floor((now_ns - self.start_ns - self.offset_ns) * Fraction(self.rate_hz) / _SECOND_NS)
+
+
+class VideoSource:
+    """Plays a `Video` by a `Schedule`. A loop is a new epoch; who comes late gets the newest picture, never a queue."""
+
+    def __init__(self, video: Video, schedule: Schedule, clock: Clock) -> None:
+        self._video = video
+        self._schedule = schedule
+        self._clock = clock
+        self._last: int | None = None
+        self._skipped = 0
+
+    @property
+    def skipped(self) -> int:
+        """See `Source.skipped`."""
+        return self._skipped
+
+    def grab(self, timeout_s: float) -> JpegFrame | None:
+        """See `Source.grab`."""
+        now_ns = self._clock.now_ns()
+        newest = self._schedule.newest(now_ns)
+        # What was shown while the networks were loading was never there to be missed.
+        wanted = max(0, newest) if self._last is None else self._last + 1
+        if newest < wanted:
+            due_ns = self._schedule.t_ns(wanted)
+            self._clock.sleep_until(min(due_ns, now_ns + round(timeout_s * _SECOND_NS)))
+            newest = self._schedule.newest(self._clock.now_ns())
+            if newest < wanted:
+                return None
+        self._skipped += newest - wanted
+        self._last = newest
+        epoch, index = divmod(newest, len(self._video.pictures))
+        return self._video.frame(epoch, index, self._schedule.t_ns(newest))
+
+    def close(self) -> None:
+        """Nothing is held: the file was read whole."""

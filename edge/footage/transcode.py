@@ -1,0 +1,75 @@
+"""A video as it was published becomes a file in which every picture stands alone, as a UVC camera's MJPG stream does.
+
+So the edge grabs every picture for nothing and decodes only those that it looks at.
+"""
+
+import io
+from fractions import Fraction
+from pathlib import Path
+from typing import cast
+
+import av
+import cv2
+import numpy as np
+
+from models.arrays import UInt8
+from models.errors import UserError
+
+SIZE_PX = (720, 1270)
+"""(width, height): 1088x1920, the pictures that were calibrated, at 720 px width."""
+JPEG_QUALITY = 90
+BAR_LEVEL = 40.0
+"""Mean grey level under which an edge row belongs to a black bar; the bars measure 1-12, the pictures above 75."""
+
+
+def transcode(source: bytes, target: Path, camera: str) -> int:
+    """Write the video file `source` as Motion JPEG of `SIZE_PX` to `target`, which appears only when it is complete.
+
+    Two of the four videos were published at 1080 px width: the calibrated 1088x1920 scaled to fit, with black bars of 7 px
+    above and below. Cutting the bars off before scaling undoes that, so that one calibrated pixel is the same size everywhere.
+
+    Returns:
+        The number of pictures.
+
+    Raises:
+        UserError: the file is no video that can be read.
+    """
+    part = target.with_name(f"{target.name}.part")
+    try:
+        with av.open(io.BytesIO(source), "r") as video, av.open(str(part), "w", format="avi") as sink:
+            count = _write(video, sink)
+    except (av.FFmpegError, IndexError) as error:
+        part.unlink(missing_ok=True)
+        raise UserError(f"footage: {camera}: its video cannot be read ({error}); fetch it again") from error
+    part.replace(target)
+    return count
+
+
+def _write(video: av.container.InputContainer, sink: av.container.OutputContainer) -> int:
+    rate = Fraction(video.streams.video[0].average_rate or 60)
+    stream = sink.add_stream("mjpeg", rate=rate, options={"strict": "unofficial"})
+    stream.width, stream.height = SIZE_PX
+    stream.pix_fmt = "yuvj420p"
+    count, rows = 0, slice(None)
+    for count, frame in enumerate(video.decode(video=0), start=1):
+        picture = cast(UInt8, frame.to_ndarray(format="bgr24"))
+        if count == 1:
+            rows = picture_rows(picture)
+        packet = av.Packet(encode_jpeg(cast(UInt8, cv2.resize(picture[rows], SIZE_PX, interpolation=cv2.INTER_AREA))))
+        packet.stream, packet.time_base, packet.is_keyframe = stream, 1 / rate, True
+        packet.pts = packet.dts = count - 1
+        packet.duration = 1
+        sink.mux(packet)
+    return count
+
+
+def picture_rows(picture: UInt8) -> slice:
+    """The rows of a picture (h, w, 3) between black bars above and below."""
+    bright = np.flatnonzero(picture.mean(axis=(1, 2)) > BAR_LEVEL)
+    return slice(int(bright[0]), int(bright[-1]) + 1)
+
+
+def encode_jpeg(picture: UInt8) -> bytes:
+    """A BGR picture (h, w, 3) as baseline JPEG with 4:2:0 chroma."""
+    options = [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_420]
+    return cv2.imencode(".jpg", picture, options)[1].tobytes()

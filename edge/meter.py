@@ -1,0 +1,78 @@
+"""Counts what an edge process does and turns it into a health message once a second."""
+
+from dataclasses import dataclass, field
+
+from models.messages.health import CameraHealth, Health
+from models.process import Resources
+
+PERIOD_NS = 1_000_000_000
+SILENT_NS = 2_000_000_000
+"""A camera that showed nothing for this long is reported."""
+
+
+@dataclass
+class Meter:
+    """What happened since the last report, and the totals since the start."""
+
+    process: str
+    pid: int
+    camera: str
+    t_report_ns: int
+    t_picture_ns: int
+    skipped: int = 0
+    pictures: int = 0
+    inferred: int = 0
+    damaged: int = 0
+    backlog_ns: int = 0
+    spent_ns: dict[str, int] = field(default_factory=dict)
+
+    def grabbed(self, t_now_ns: int, pictures: int) -> None:
+        """A grab moved the source on by that many pictures."""
+        self.pictures += pictures
+        self.t_picture_ns = t_now_ns
+
+    def waited(self, age_ns: int) -> None:
+        """A picture had this age when its turn came."""
+        self.backlog_ns = max(self.backlog_ns, age_ns)
+
+    def is_due(self, t_now_ns: int) -> bool:
+        """Whether a second has passed since the last report."""
+        return t_now_ns - self.t_report_ns >= PERIOD_NS
+
+    def report(self, t_now_ns: int, target_hz: float, network: str, problem: str, used: Resources) -> Health:
+        """The health message of the time since the last report; counting begins anew."""
+        seconds = max(1e-9, (t_now_ns - self.t_report_ns) * 1e-9)
+        reason = self._reason(t_now_ns, problem)
+        camera = CameraHealth(
+            camera=self.camera,
+            source_hz=self.pictures / seconds,
+            fresh_hz=self.inferred / seconds,
+            target_hz=target_hz,
+            skipped=self.skipped,
+            backlog_ms=self.backlog_ns * 1e-6,
+            network=network,
+            stage_ms={stage: spent * 1e-6 / max(1, self.inferred) for stage, spent in self.spent_ns.items()},
+        )
+        self.pictures = self.inferred = self.damaged = self.backlog_ns = 0
+        self.spent_ns = dict.fromkeys(self.spent_ns, 0)
+        self.t_report_ns = t_now_ns
+        return Health(
+            process=self.process,
+            pid=self.pid,
+            t_ns=t_now_ns,
+            state="degraded" if reason else "ok",
+            reason=reason,
+            cpu_cores=used.cpu_cores,
+            rss_mb=used.rss_mb,
+            camera=camera,
+        )
+
+    def _reason(self, t_now_ns: int, problem: str) -> str:
+        reasons = []
+        if t_now_ns - self.t_picture_ns >= SILENT_NS:
+            reasons.append(f"camera '{self.camera}' has shown nothing for {(t_now_ns - self.t_picture_ns) * 1e-9:.0f} s")
+        if self.damaged:
+            reasons.append(f"camera '{self.camera}': {self.damaged} damaged pictures in the last second")
+        if problem:
+            reasons.append(problem)
+        return "; ".join(reasons)

@@ -1,0 +1,162 @@
+"""The edge process of one camera: grab, look if it is this camera's turn, publish. The newest picture or none."""
+
+import os
+import time
+from dataclasses import dataclass, field
+
+import cv2
+import msgspec
+
+from edge.cameras.source import Clock, Frame, MonotonicClock, PictureError, Source
+from edge.cameras.video import Schedule, VideoSource, load_video
+from edge.library import Library
+from edge.meter import Meter
+from edge.observe import EdgeConfig, EdgeState, Networks, Stages, observe
+from edge.turns import CONTROL_LIFETIME_NS, default_control, is_due, missed_turns
+from models.config.site import CameraConfig
+from models.errors import UserError
+from models.messages import codec, topics
+from models.messages.control import ViewControl
+from models.process import ProcessContext, Subscription
+
+GRAB_TIMEOUT_S = 0.2
+"""How long a silent camera keeps the loop from its other duties."""
+MILLISECOND_NS = 1_000_000
+
+
+def main(context: ProcessContext) -> None:
+    """Serve one camera until `context.stop` is set.
+
+    Raises:
+        UserError: the camera, its file or the first network cannot be had.
+    """
+    from edge.perception.networks import load_library  # noqa: PLC0415 - a wrong file is reported before onnxruntime is loaded
+
+    cv2.setNumThreads(1)
+    clock = MonotonicClock()
+    source = open_source(_camera_config(context), context, clock)
+    try:
+        EdgeLoop(context, source, load_library(context), clock).run()
+    finally:
+        source.close()
+
+
+def open_source(config: CameraConfig, context: ProcessContext, clock: Clock) -> Source:
+    """The source that the site file describes."""
+    video = load_video(context.data / config.path, config.name)
+    schedule = Schedule(context.start_ns, round(config.offset_ms * MILLISECOND_NS), config.rate_hz)
+    return VideoSource(video, schedule, clock)
+
+
+def _camera_config(context: ProcessContext) -> CameraConfig:
+    for camera in context.site.cameras:
+        if camera.name == context.camera:
+            return camera
+    raise UserError(f"camera '{context.camera}' is not in the site file; its cameras are {', '.join(context.rig.names)}")
+
+
+@dataclass
+class _Plan:
+    """Fusion's newest wish, or the default while there is none or it is too old."""
+
+    subscription: Subscription
+    fallback: ViewControl
+    newest: ViewControl | None = None
+    problem: str = ""
+
+    def at(self, now_ns: int) -> ViewControl:
+        while (delivery := self.subscription.receive(0.0)) is not None:
+            try:
+                self.newest = codec.decode(delivery.payload, ViewControl)
+                self.problem = ""
+            except codec.CodecError as error:
+                self.problem = f"a plan of fusion's cannot be read: {error}"
+        if self.newest is not None and now_ns - self.newest.t_ns > CONTROL_LIFETIME_NS:
+            self.newest = None
+        return self.newest or self.fallback
+
+
+@dataclass
+class _Progress:
+    """Where the loop is: the step's state and the instants of the last picture grabbed and the last one inferred."""
+
+    state: EdgeState = field(default_factory=EdgeState)
+    t_grabbed_ns: int | None = None
+    t_inferred_ns: int | None = None
+
+
+class EdgeLoop:
+    """The loop of `main`, with everything from outside passed in.
+
+    Args:
+        context: see `ProcessContext`; its camera must be one of the rig's.
+        source: where the pictures come from.
+        library: the networks.
+        clock: CLOCK_MONOTONIC.
+    """
+
+    def __init__(self, context: ProcessContext, source: Source, library: Library, clock: Clock) -> None:
+        if context.camera is None:
+            raise ValueError("an edge process serves a camera")
+        self._context = context
+        self._camera = context.camera
+        self._source = source
+        self._library = library
+        self._clock = clock
+        self._config = EdgeConfig()
+        position = context.rig.index(self._camera)
+        limit_hz = float(context.site.inference.max_rate_hz)
+        fallback = default_control(self._camera, position, len(context.rig), context.start_ns, limit_hz)
+        self._plan = _Plan(context.bus.subscribe(topics.control(self._camera), keep=1), fallback)
+        now_ns = clock.now_ns()
+        self._meter = Meter(context.name, os.getpid(), self._camera, t_report_ns=now_ns, t_picture_ns=now_ns)
+        self._progress = _Progress()
+
+    def run(self) -> None:
+        """Go on until `context.stop` is set."""
+        self._context.bus.declare_alive(topics.alive(self._context.name))
+        try:
+            while not self._context.stop.is_set():
+                control = self._plan.at(self._clock.now_ns())
+                skipped_before = self._source.skipped
+                frame = self._source.grab(GRAB_TIMEOUT_S)
+                if frame is not None:
+                    self._take(frame, self._source.skipped - skipped_before, control)
+                self._report(control)
+        finally:
+            self._plan.subscription.close()
+
+    def _take(self, frame: Frame, skipped: int, control: ViewControl) -> None:
+        """Count a picture, and infer it if it is its turn."""
+        progress, meter = self._progress, self._meter
+        now_ns = self._clock.now_ns()
+        meter.grabbed(now_ns, 1 + skipped)
+        if progress.t_grabbed_ns is not None:
+            meter.skipped += missed_turns(frame.t_mid_ns, progress.t_grabbed_ns, skipped, control)
+        progress.t_grabbed_ns = frame.t_mid_ns
+        if is_due(frame.t_mid_ns, progress.t_inferred_ns, control):
+            progress.t_inferred_ns = frame.t_mid_ns
+            meter.waited(now_ns - frame.t_mid_ns)
+            self._infer(frame, control)
+
+    def _infer(self, frame: Frame, control: ViewControl) -> None:
+        networks = Networks(self._library.pose(control.network), self._library.detector)
+        stages = Stages(time.thread_time_ns, self._meter.spent_ns)
+        try:
+            self._progress.state, observation = observe(self._progress.state, frame, networks, control, self._config, stages)
+        except PictureError:
+            self._meter.damaged += 1
+            return
+        self._meter.inferred += 1
+        with stages.measure("encode"):
+            stamped = msgspec.structs.replace(observation, t_published_ns=self._clock.now_ns())
+            self._context.bus.publish(topics.observation(self._camera), codec.encode(stamped))
+
+    def _report(self, control: ViewControl) -> None:
+        now_ns = self._clock.now_ns()
+        if not self._meter.is_due(now_ns):
+            return
+        problem = "; ".join(filter(None, (self._library.problem, self._plan.problem)))
+        network = self._library.current
+        health = self._meter.report(now_ns, control.rate_hz, network, problem, self._context.resources())
+        self._context.bus.publish(topics.health(self._context.name), codec.encode(health))
