@@ -26,7 +26,10 @@ class Subscription(Protocol):
     """A stream of deliveries that keeps the newest few of each topic and never grows."""
 
     def receive(self, timeout_s: float) -> Delivery | None:
-        """The oldest delivery that is kept, waiting for one at most `timeout_s`; None if none came."""
+        """The next delivery, waiting for one at most `timeout_s`; None if none came.
+
+        Oldest first within a topic; topics take turns, so that none starves however slow the reader is.
+        """
 
     def close(self) -> None:
         """Stop receiving."""
