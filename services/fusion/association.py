@@ -1,0 +1,183 @@
+"""Who among the persons of all pictures is the pupil.
+
+Persons of two cameras who are one person triangulate to a body of human size whose projections fall on both; every other
+camera's nearest person then joins. More cameras that agree win: a bystander at the edge of the room stands in two pictures and is
+consistent in both. Among equals, the person nearer to where the cameras look, and larger, is the pupil.
+"""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Final
+
+import numpy as np
+
+from models.arrays import Bool, Float
+from models.skeleton import coco
+from services.fusion.candidates import PERSONS, Candidates
+from services.fusion.config import FusionConfig
+from services.fusion.joint_filter import Expectation
+from services.fusion.swap import repair
+from services.fusion.triangulation import Triangulated, triangulate
+from services.fusion.views import Sighting, Views
+
+_MIRROR: Final = np.array(coco.MIRROR)
+_MIN_JOINTS: Final = 6
+_AGREEING: Final = 0.6
+_LIMB_M: Final = (0.08, 0.75)
+_TORSO_M: Final = (0.15, 1.0)
+_SWAP_COST: Final = 0.25
+_FAMILIAR: Final = 0.75
+_NEAR_M: Final = 2.0
+
+
+Familiar = frozenset[tuple[int, int]]
+"""(camera index, track number) pairs by which a person is known."""
+
+
+@dataclass(frozen=True, eq=False)
+class Hypothesis:
+    """One person in space.
+
+    Attributes:
+        slots: which candidate of each camera it is, by camera index.
+        joints: the joints at the instant of the search.
+        score: number of cameras, less for exchanged sides, more for nearness and familiarity; higher is better.
+    """
+
+    slots: dict[int, int]
+    joints: Triangulated
+    score: float
+
+    @property
+    def centre_m(self) -> Float:
+        """(3,) median of its joints."""
+        centre: Float = np.nanmedian(self.joints.points_m, axis=0)
+        return centre
+
+
+def median_distance_m(sighting: Sighting, expected: Expectation) -> float:
+    """Median distance of keypoints from where they are expected, sides ignored; infinite if too few can be compared."""
+    direct = np.linalg.norm(sighting.points_px - expected.points_px, axis=1)
+    crossed = np.linalg.norm(sighting.points_px[_MIRROR] - expected.points_px, axis=1)
+    crossed[~(sighting.usable[_MIRROR])] = np.inf
+    direct[~sighting.usable] = np.inf
+    distance = np.minimum(direct, crossed) / expected.px_per_m
+    compared = distance[expected.known & np.isfinite(distance)]
+    return float(np.median(compared)) if compared.size >= _MIN_JOINTS else np.inf
+
+
+def pick_pupil(persons: tuple[Sighting, ...], expected: Expectation, gate_m: float) -> Sighting | None:
+    """The person of one picture who is where the pupil is expected; None if nobody is."""
+    best, nearest = None, gate_m
+    uncertainty = 0.0
+    if expected.known.any():
+        sigma_px = np.sqrt(np.median(expected.variance_px2[expected.known]))
+        uncertainty = float(sigma_px / np.median(expected.px_per_m[expected.known]))
+    for person in persons:
+        distance = median_distance_m(person, expected) - min(uncertainty, gate_m)
+        if distance < nearest:
+            best, nearest = person, distance
+    return best
+
+
+class PersonSearch:
+    """Finds the persons in space that the candidates of all cameras at one instant can be."""
+
+    def __init__(
+        self, views: Views, candidates: Candidates, t_s: float, config: FusionConfig, only: Collection[int] | None = None
+    ) -> None:
+        """Search at time `t_s`, among all candidates or only among some slots."""
+        self._views = views
+        self._config = config
+        points, sigma, usable = candidates.tracks.at(t_s, config.timing)
+        slots = candidates.live(t_s, config.association.max_age_s)
+        self._persons: dict[int, list[int]] = {}
+        self._sightings: dict[int, Sighting] = {}
+        for slot in slots:
+            if usable[slot].sum() < _MIN_JOINTS or (only is not None and slot not in only):
+                continue
+            camera, track = candidates.identity(slot)
+            seen = points[slot][usable[slot]]
+            size = float(np.linalg.norm(seen.max(axis=0) - seen.min(axis=0)))
+            forgiving = np.hypot(sigma[slot], config.association.slack * size)
+            self._sightings[slot] = Sighting(camera, track, t_s, points[slot], forgiving, usable[slot])
+            self._persons.setdefault(camera, []).append(slot)
+        self._focus = _focus(views)
+
+    def best(self, familiar: Familiar) -> Hypothesis | None:
+        """The likeliest pupil, people who were the pupil before the seam or the loss being preferred."""
+        found = [
+            hypothesis
+            for first, second in combinations(sorted(self._persons), 2)
+            for a in self._persons[first]
+            for b in self._persons[second]
+            if (hypothesis := self._grow(a, b, familiar)) is not None
+        ]
+        return max(found, key=lambda hypothesis: hypothesis.score, default=None)
+
+    def _grow(self, a: int, b: int, familiar: Familiar) -> Hypothesis | None:
+        members = {self._sightings[a].camera: self._sightings[a], self._sightings[b].camera: self._sightings[b]}
+        slots = {slot // PERSONS: slot for slot in (a, b)}
+        joints = self._triangulate(members)
+        comparable = (self._sightings[a].usable & self._sightings[b].usable).sum()
+        if (joints.count >= 2).sum() < max(_MIN_JOINTS, _AGREEING * comparable):
+            return None
+        if not _is_human(joints.points_m, joints.count >= 2):
+            return None
+        swaps = 0
+        for camera, persons in self._persons.items():
+            if camera in slots:
+                continue
+            expected = _expect(self._views.projections[camera], joints)
+            chosen = pick_pupil(tuple(self._sightings[slot] for slot in persons), expected, self._config.association.person_gate_m)
+            if chosen is not None:
+                slots[camera] = next(slot for slot in persons if self._sightings[slot] is chosen)
+                members[camera], swapped = repair(chosen, expected)
+                swaps += bool(swapped[list(coco.TRUNK)].any())
+        joints = self._triangulate(members)
+        known = sum((camera, person.track) in familiar for camera, person in members.items()) / len(members)
+        centre = np.nanmedian(joints.points_m, axis=0)
+        nearness = 1.0 / (1.0 + float(np.sum((centre - self._focus)[:2] ** 2)) / _NEAR_M**2)
+        size = float(np.mean([self._size(slot) for slot in slots.values()]))
+        score = len(slots) - _SWAP_COST * swaps + _FAMILIAR * known + 0.5 * nearness + 0.2 * min(size, 1.0)
+        return Hypothesis(slots, joints, score)
+
+    def _triangulate(self, members: dict[int, Sighting]) -> Triangulated:
+        cameras = len(self._views)
+        points, sigma = np.zeros((cameras, coco.COUNT, 2)), np.ones((cameras, coco.COUNT))
+        usable = np.zeros((cameras, coco.COUNT), np.bool_)
+        for camera, person in members.items():
+            points[camera], sigma[camera], usable[camera] = person.points_px, person.sigma_px, person.usable
+        return triangulate(self._views, points, sigma, usable, self._config.triangulation)
+
+    def _size(self, slot: int) -> float:
+        person = self._sightings[slot]
+        seen = person.points_px[person.usable]
+        return float(np.ptp(seen[:, 1])) / self._views.rig.cameras[person.camera].size_px[1]
+
+
+def _expect(projection: Float, joints: Triangulated) -> Expectation:
+    known = (joints.count >= 2) & np.isfinite(joints.points_m[:, 0])
+    seen = np.where(known[:, None], joints.points_m, 0.0) @ projection[:, :3].T + projection[:, 3]
+    depth = np.where(known & (seen[:, 2] > 1e-6), seen[:, 2], 1.0)
+    scale = np.linalg.norm(projection[0, :3]) / depth
+    variance = np.trace(joints.covariance_m2, axis1=1, axis2=2) / 3 * scale**2
+    return Expectation(seen[:, :2] / depth[:, None], variance, scale, known & (seen[:, 2] > 1e-6))
+
+
+def _is_human(points_m: Float, known: Bool) -> bool:
+    """Whether most measurable limbs and the torso have the size of a child's or an adult's."""
+    spans = [(a, b, _LIMB_M) for a, b in coco.LIMBS.values()]
+    left_shoulder, right_shoulder, left_hip, right_hip = coco.TRUNK
+    spans += [(left_shoulder, left_hip, _TORSO_M), (right_shoulder, right_hip, _TORSO_M)]
+    checks = [low <= np.linalg.norm(points_m[a] - points_m[b]) <= high for a, b, (low, high) in spans if known[a] and known[b]]
+    return len(checks) >= 3 and sum(map(bool, checks)) >= 0.75 * len(checks)
+
+
+def _focus(views: Views) -> Float:
+    """(3,) the point nearest to all optical axes: where the cameras look."""
+    axes = np.stack([camera.rotation[2] for camera in views.rig])
+    away = np.eye(3) - axes[:, :, None] * axes[:, None, :]
+    point: Float = np.linalg.lstsq(away.sum(axis=0), np.einsum("cij,cj->i", away, views.centres_m), rcond=None)[0]
+    return point

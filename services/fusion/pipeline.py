@@ -1,0 +1,190 @@
+"""Fusion as one pure function: `state, out = step(state, event, config)`.
+
+An event is an observation, as it arrives, or a tick of the output's clock. The same events give the same output to the last
+bit, so a recorded lesson replays through this code. The state is changed in place and belongs to the caller of `step`.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from models.camera.rig import Rig
+from models.messages.control import CropPrediction
+from models.messages.motion import CameraUse, JointState, Motion
+from models.messages.observation import Observation
+from models.skeleton import coco
+from services.fusion.config import FusionConfig
+from services.fusion.prediction import predict_crop
+from services.fusion.pupil import Pose
+from services.fusion.reconstruction import Reconstruction
+from services.fusion.views import Views, sightings
+
+_NOBODY = Pose(
+    np.zeros((coco.COUNT, 3)),
+    np.zeros((coco.COUNT, 3, 3)),
+    np.full(coco.COUNT, JointState.UNKNOWN, np.uint8),
+    np.zeros(coco.COUNT, np.uint32),
+)
+_MAX_FUTURE_S = 1.0
+_MAX_GRID = 8
+"""Smooth instants that one tick may give; a longer pause of the ticks leaves a hole."""
+
+
+@dataclass(frozen=True)
+class Tick:
+    """Output is due: CLOCK_MONOTONIC nanoseconds."""
+
+    t_ns: int
+
+
+@dataclass(frozen=True)
+class FusionOutput:
+    """What one event led to.
+
+    Attributes:
+        motions: live and smooth motions that became due; `t_published_ns` is the tick's time.
+        found: whether the pupil is chosen.
+        searching: by camera name, whether it should look at everyone; empty but at ticks.
+    """
+
+    motions: tuple[Motion, ...] = ()
+    found: bool = False
+    searching: dict[str, bool] = field(default_factory=dict)
+
+
+@dataclass(eq=False)
+class FusionState:
+    """Everything that fusion remembers.
+
+    Attributes:
+        epochs: the running epoch last; before it the one whose instants are still to be given out.
+        seams_s: when each of `epochs` begins.
+        tick_ns: the newest tick, 0 before the first.
+        grid: index of the next smooth instant, None before the first.
+        sequences: motions given out, by kind.
+        ignored: observations that were not fused, by reason.
+    """
+
+    views: Views
+    epochs: list[Reconstruction] = field(default_factory=list)
+    seams_s: list[float] = field(default_factory=list)
+    tick_ns: int = 0
+    grid: int | None = None
+    sequences: dict[str, int] = field(default_factory=lambda: {"live": 0, "smooth": 0})
+    ignored: dict[str, int] = field(default_factory=dict)
+
+
+def initial_state(rig: Rig, config: FusionConfig) -> FusionState:  # noqa: ARG001 - the signature of every step function's start
+    """The state before the first event."""
+    return FusionState(Views.of(rig))
+
+
+def step(state: FusionState, event: Observation | Tick, config: FusionConfig) -> tuple[FusionState, FusionOutput]:
+    """Take in one event."""
+    if isinstance(event, Tick):
+        return state, _tick(state, event.t_ns, config)
+    reason = _observe(state, event, config)
+    if reason:
+        state.ignored[reason] = state.ignored.get(reason, 0) + 1
+    return state, FusionOutput(found=bool(state.epochs) and state.epochs[-1].pupil is not None)
+
+
+def predict_views(state: FusionState, t_ns: int) -> dict[str, CropPrediction | None]:
+    """Where each camera should look at an instant near the newest tick; None where that is not known."""
+    pupil = state.epochs[-1].pupil if state.epochs else None
+    return {camera.name: None if pupil is None else predict_crop(pupil, camera, t_ns) for camera in state.views.rig}
+
+
+def _observe(state: FusionState, observation: Observation, config: FusionConfig) -> str:
+    """Fuse an observation, or say why not."""
+    t_s = observation.t_mid_ns * 1e-9
+    if observation.camera not in state.views.index:
+        return "camera not in the calibration"
+    if state.tick_ns and t_s > state.tick_ns * 1e-9 + _MAX_FUTURE_S:
+        return "from the future"
+    if not state.epochs or observation.epoch > state.epochs[-1].epoch:
+        _open_epoch(state, observation.epoch, t_s)
+    for index, reconstruction in enumerate(state.epochs):
+        if reconstruction.epoch == observation.epoch:
+            if index + 1 < len(state.epochs) and t_s >= state.seams_s[index + 1]:
+                return "beyond its epoch's end"
+            persons = sightings(observation, state.views, config.sighting)
+            reconstruction.observe(state.views.index[observation.camera], t_s, persons, config)
+            state.seams_s[index] = min(state.seams_s[index], t_s)
+            return ""
+    return "of a past epoch"
+
+
+def _open_epoch(state: FusionState, epoch: int, t_s: float) -> None:
+    familiar = state.epochs[-1].familiar if state.epochs else frozenset()
+    state.epochs.append(Reconstruction(epoch, state.views, familiar))
+    state.seams_s.append(t_s)
+
+
+def _tick(state: FusionState, t_ns: int, config: FusionConfig) -> FusionOutput:
+    if not state.epochs or t_ns <= state.tick_ns:
+        return FusionOutput()
+    state.tick_ns = t_ns
+    t_s = t_ns * 1e-9
+    for reconstruction in state.epochs:
+        reconstruction.tick(config)
+    live_s = t_s - config.live_lag_frames * config.frame_s
+    motions = [_live(state, live_s, config), *_smooth(state, t_s, live_s - config.smooth_lag_frames * config.frame_s, config)]
+    current = state.epochs[-1]
+    searching = {name: current.searching(index, config) for name, index in state.views.index.items()}
+    return FusionOutput(tuple(motions), current.pupil is not None, searching)
+
+
+def _live(state: FusionState, t_s: float, config: FusionConfig) -> Motion:
+    reconstruction = _epoch_at(state, t_s)
+    pose = _NOBODY if reconstruction.pupil is None else reconstruction.pupil.live(t_s, config)
+    return _motion(state, "live", reconstruction, t_s, pose)
+
+
+def _smooth(state: FusionState, now_s: float, until_s: float, config: FusionConfig) -> list[Motion]:
+    """All grid instants up to `until_s` that were not given out yet, each by the epoch that it belongs to."""
+    until = int(np.floor(until_s / config.frame_s + 1e-6))
+    first = int(np.ceil(state.epochs[0].first_s / config.frame_s))
+    begin = max(first if state.grid is None else state.grid, until - _MAX_GRID + 1)
+    motions = []
+    for index, reconstruction in enumerate(state.epochs):
+        end = until + 1
+        if index + 1 < len(state.epochs):
+            end = min(end, int(np.ceil(state.seams_s[index + 1] / config.frame_s)))
+        due = range(begin, max(begin, end))
+        begin = due.stop
+        poses = [_NOBODY] * len(due) if reconstruction.pupil is None else reconstruction.pupil.smooth(now_s, due, config)
+        motions += [_motion(state, "smooth", reconstruction, k * config.frame_s, pose) for k, pose in zip(due, poses, strict=True)]
+    state.grid = begin
+    while len(state.epochs) > 1 and until_s >= state.seams_s[1]:
+        del state.epochs[0], state.seams_s[0]
+    return motions
+
+
+def _epoch_at(state: FusionState, t_s: float) -> Reconstruction:
+    for reconstruction, seam_s in zip(reversed(state.epochs), reversed(state.seams_s), strict=True):
+        if t_s >= seam_s:
+            return reconstruction
+    return state.epochs[0]
+
+
+def _motion(state: FusionState, kind: str, reconstruction: Reconstruction, t_s: float, pose: Pose) -> Motion:
+    newest = reconstruction.newest_s
+    used = int(np.bitwise_or.reduce(pose.views))
+    ages_ms = np.where(np.isfinite(newest), (t_s - newest) * 1e3, np.nan)
+    cameras = tuple(CameraUse(name, bool((used >> i) & 1), float(ages_ms[i])) for name, i in state.views.index.items())
+    sequence = state.sequences[kind]
+    state.sequences[kind] = sequence + 1
+    return Motion(
+        kind="live" if kind == "live" else "smooth",
+        sequence=sequence,
+        epoch=reconstruction.epoch,
+        t_ns=round(t_s * 1e9),
+        t_newest_ns=round(float(newest.max()) * 1e9),
+        t_published_ns=state.tick_ns,
+        joints_m=pose.joints_m.astype(np.float32),
+        covariance_m2=pose.covariance_m2.astype(np.float32),
+        states=pose.states,
+        views=pose.views,
+        cameras=cameras,
+    )

@@ -1,0 +1,198 @@
+"""The chosen person: every picture of him or her is fused here, and asked for here at any instant."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from models.arrays import Bool, Float, UInt8, UInt32
+from models.messages.motion import JointState
+from models.skeleton import coco
+from services.fusion.association import Familiar, pick_pupil
+from services.fusion.body_filter import BodyFilter
+from services.fusion.compiled import Counts
+from services.fusion.config import FusionConfig
+from services.fusion.history import FilterHistory, Seed
+from services.fusion.limbs import LimbLengths
+from services.fusion.smoothing import Smoother
+from services.fusion.swap import repair
+from services.fusion.timing import Tracks
+from services.fusion.triangulation import Triangulated, triangulate
+from services.fusion.views import Sighting, Views
+
+_TRACK_DEPTH = 48
+_TRUNK = list(coco.TRUNK)
+_REACH_M = 1.3
+"""No joint is further from the body's centre."""
+_SEED_SIGMA_M = 0.02
+"""Added to a seed's sigma, for what triangulation at an interpolated instant does not know of."""
+_STALE_S = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """The joints at one instant: arrays as in `Motion`, in float64."""
+
+    joints_m: Float
+    covariance_m2: Float
+    states: UInt8
+    views: UInt32
+
+
+class Pupil:
+    """Estimates of one person within one epoch.
+
+    Attributes:
+        since_s: the instant from which on there are estimates.
+        misses: (C,) consecutive observations in which the pupil was not found.
+        body: the filter of the body's centre.
+    """
+
+    def __init__(self, views: Views, t_s: float, joints: Triangulated, config: FusionConfig) -> None:
+        self.since_s = t_s
+        self.misses: Counts = np.zeros(len(views), np.int64)
+        self.body = BodyFilter(t_s, np.nanmedian(joints.points_m, axis=0))
+        self._views = views
+        self._identities: dict[int, int] = {}
+        self._tracks = Tracks(len(views), _TRACK_DEPTH)
+        self._filters = FilterHistory(t_s, views, config.filter)
+        self._limbs = LimbLengths(config.smoothing)
+        self._agreed_s: Float = np.full((len(views), coco.COUNT), -np.inf)
+        self._disagreements: Counts = np.zeros(coco.COUNT, np.int64)
+        self._two_views: Counts = np.full(coco.COUNT, -(2**40), np.int64)
+        last = int(np.ceil(t_s / config.frame_s)) + 1
+        self._smoother = Smoother(last - config.smoothing.knots + 1, config.frame_s, config.smoothing)
+        self._seed(t_s, joints, np.flatnonzero(joints.count >= 2))
+
+    @property
+    def familiar(self) -> Familiar:
+        """(camera, track) pairs by which the pupil was last known."""
+        return frozenset(self._identities.items())
+
+    @property
+    def lost(self) -> bool:
+        """Whether no joint is estimated any more."""
+        return not self._filters.newest.alive.any()
+
+    def cameras_since(self, t_s: float) -> int:
+        """How many cameras have seen the pupil since then."""
+        return sum(self._tracks.newest_s(camera) >= t_s for camera in range(len(self._views)))
+
+    def follow(self, camera: int, t_s: float, persons: tuple[Sighting, ...], config: FusionConfig) -> None:
+        """Find the pupil in one picture and fuse it at the picture's own time."""
+        projection = self._views.projections[camera]
+        expected = self._filters.at(t_s).expect(projection)
+        found = pick_pupil(persons, expected, config.association.person_gate_m)
+        if found is None:
+            self.misses[camera] += 1
+            return
+        self.misses[camera] = 0
+        self._identities[camera] = found.track
+        sighting, _ = repair(found, expected)
+        if not self._tracks.add(camera, sighting):
+            return
+        innovation = self._filters.observe(sighting)
+        if innovation is not None:
+            self._agreed_s[camera, innovation.used] = np.maximum(self._agreed_s[camera, innovation.used], t_s)
+        trunk = sighting.usable[_TRUNK]
+        if trunk.sum() >= 3:
+            centre = sighting.points_px[_TRUNK][trunk].mean(axis=0)
+            self.body.observe(t_s, projection, centre, float(sighting.sigma_px[_TRUNK][trunk].max()))
+
+    def check(self, config: FusionConfig) -> None:
+        """Hold the filters against triangulation at the newest instant that all cameras reach, and give up what nobody sees."""
+        newest = np.array([self._tracks.newest_s(camera) for camera in range(len(self._views))])
+        fresh = newest[newest >= newest.max() - _STALE_S]
+        if not np.isfinite(newest.max()):
+            return
+        instant = max(float(fresh.min()), self.since_s)
+        self._give_up(float(newest.max()), config)
+        filters = self._filters.at(instant)
+        points, sigma, usable = self._tracks.at(instant, config.timing)
+        prior = np.where(filters.alive[:, None], filters.state[:, :3], np.nan)
+        found = triangulate(self._views, points, sigma, usable, config.triangulation, prior)
+        near = np.linalg.norm(found.points_m - self.body.at(instant)[:3], axis=1) < _REACH_M
+        self._limbs.learn(found.points_m, found.covariance_m2, (found.count >= 2) & near)
+        apart = found.points_m - filters.state[:, :3]
+        spread = found.covariance_m2 + filters.covariance[:, :3, :3] + np.eye(3) * 1e-6
+        distance2 = np.einsum("ji,ji->j", apart, np.linalg.solve(spread, apart[..., None])[..., 0])
+        supporters = (self._agreed_s >= instant - config.filter.view_memory_s).sum(axis=0)
+        better = near & (found.count >= 2) & (found.count >= supporters)
+        against = better & filters.alive & (distance2 > config.filter.reseed_gate)
+        self._disagreements = np.where(against, self._disagreements + 1, 0)
+        anew = (better & ~filters.alive) | (self._disagreements >= config.filter.reseed_after)
+        if anew.any():
+            self._seed(instant, found, np.flatnonzero(anew))
+            self._disagreements[anew] = 0
+
+    def live(self, t_s: float, config: FusionConfig) -> Pose:
+        """The pose at an instant near the newest observation, from the filters."""
+        filters = self._filters.at(t_s)
+        supported = self._agreed_s >= t_s - config.filter.view_memory_s
+        covariance = filters.covariance[:, :3, :3]
+        certain = np.trace(covariance, axis1=1, axis2=2) <= config.filter.max_sigma_m**2
+        known = filters.alive & certain & (t_s >= self.since_s)
+        states = np.where(known, np.where(supported.sum(axis=0) >= 2, JointState.SEEN, JointState.GUESSED), JointState.UNKNOWN)
+        return _pose(filters.state[:, :3], covariance, states, _bits(supported))
+
+    def skeleton(self, t_s: float) -> tuple[Float, Bool]:
+        """Joints (17, 3) expected at an instant, and which are known (17,), for a rough use such as a crop."""
+        filters = self._filters.at(t_s)
+        return filters.state[:, :3], filters.alive
+
+    def smooth(self, t_s: float, indices: range, config: FusionConfig) -> list[Pose]:
+        """Move the window's end to `t_s`, improve it, and read out grid instants."""
+        for _ in range(min(int(np.floor(t_s / config.frame_s)) + 1 - self._smoother.last, config.smoothing.knots)):
+            self._smoother.extend()
+        held = int(np.floor(self._filters.newest.t_s / config.frame_s))
+        for index in range(max(held, self._smoother.first), self._smoother.last + 1):
+            ahead = self._filters.at(index * config.frame_s)
+            self._smoother.foresee(index, ahead.state[:, :3], ahead.alive)
+        memory = config.filter.view_memory_s / 2
+        return [self._read(index, memory, config) for index in indices or range(indices.start - 1, indices.start)][: len(indices)]
+
+    def _read(self, index: int, memory_s: float, config: FusionConfig) -> Pose:
+        smoothed = self._smoother.step(self._tracks, self._views, self._limbs, index, memory_s)
+        agreeing = np.bitwise_count(smoothed.views)
+        self._two_views[agreeing >= 2] = index
+        recent = (index - self._two_views) * config.frame_s <= config.filter.guess_s + 1e-9
+        certain = np.trace(smoothed.covariance_m2, axis1=1, axis2=2) <= config.filter.max_sigma_m**2
+        known = recent & certain & (index * config.frame_s >= self.since_s - config.frame_s)
+        states = np.where(known, np.where(agreeing >= 2, JointState.SEEN, JointState.GUESSED), JointState.UNKNOWN)
+        return _pose(smoothed.points_m, smoothed.covariance_m2, states, smoothed.views)
+
+    def _seed(self, t_s: float, joints: Triangulated, which: Counts) -> None:
+        doubt = np.eye(3) * _SEED_SIGMA_M**2
+        self._filters.seed(t_s, tuple(Seed(int(j), joints.points_m[j], joints.covariance_m2[j] + doubt) for j in which))
+        for joint in which:
+            agreed = ((int(joints.inliers[joint]) >> np.arange(len(self._views))) & 1).astype(np.bool_)
+            self._smoother.restart(int(joint), self._second_newest(int(joint)), joints.points_m[joint])
+            self._agreed_s[agreed, joint] = np.maximum(self._agreed_s[agreed, joint], t_s)
+
+    def _give_up(self, t_s: float, config: FusionConfig) -> None:
+        longest = config.filter.view_memory_s + config.filter.guess_s
+        old = [Seed(joint, None, None) for joint in range(coco.COUNT) if t_s - self._second_newest(joint) > longest]
+        alive = self._filters.newest.alive
+        gone = tuple(seed for seed in old if alive[seed.joint])
+        if gone:
+            self._filters.seed(t_s, gone)
+
+    def _second_newest(self, joint: int) -> float:
+        """When the second of two views last agreed with a joint."""
+        return float(np.sort(self._agreed_s[:, joint])[-2])
+
+
+def _bits(flags: Bool) -> UInt32:
+    """(C, 17) flags to (17,) with bit c for row c."""
+    bits: UInt32 = (flags.astype(np.uint32) << np.arange(len(flags), dtype=np.uint32)[:, None]).sum(axis=0, dtype=np.uint32)
+    return bits
+
+
+def _pose(joints_m: Float, covariance_m2: Float, states: UInt8, views: UInt32) -> Pose:
+    """What is unknown carries no numbers."""
+    known = states != JointState.UNKNOWN
+    return Pose(
+        np.where(known[:, None], joints_m, 0.0),
+        np.where(known[:, None, None], covariance_m2, 0.0),
+        states.astype(np.uint8),
+        np.where(known, views, 0).astype(np.uint32),
+    )

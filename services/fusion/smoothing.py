@@ -1,0 +1,110 @@
+"""The smoother: positions on the output grid, from every picture at its own time.
+
+Eq. 8 penalises differences of positions and has no data term. Here a window of positions of each joint, one every 1/30 s,
+minimises
+
+    sum over pictures  rho( |z - projection(X(t))|^2 / sigma^2 )  +  sum |D^n X|^2 / s^2  +  sum (|X - Y| - L)^2 / q^2
+
+where X(t) is cubic interpolation between the positions around the picture's own time t, D^n the n-th difference, and the last
+term holds the distance to the joint Y at the limb's other end near the limb's length L (eq. 16, with q from what is known of Y).
+One reweighted Gauss-Newton step a tick is a banded Cholesky solution, linear in the window's length; a position is stepped on in
+every tick that it is in the window, so it is read out after at least seven.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from models.arrays import Bool, Float, UInt32
+from models.skeleton import coco
+from services.fusion.config import SmoothingConfig
+from services.fusion.limbs import ENDS, LimbLengths
+from services.fusion.timing import Tracks
+from services.fusion.views import Views
+from services.fusion.window import smooth_window
+
+
+@dataclass(frozen=True, eq=False)
+class Smoothed:
+    """Joints at one grid instant.
+
+    Attributes:
+        points_m: (17, 3).
+        covariance_m2: (17, 3, 3).
+        views: (17,) bit i set if camera i agrees, near that instant.
+    """
+
+    points_m: Float
+    covariance_m2: Float
+    views: UInt32
+
+
+class Smoother:
+    """The window of one epoch.
+
+    Attributes:
+        first: grid index of the oldest position; position k is at (first + k) * frame_s.
+        positions_m: (17, knots, 3).
+        covariance_m2: (17, 3, 3) of the position read out last; the neighbours' limb terms are weighed by it.
+        known: (17, knots) whether a position holds anything.
+    """
+
+    def __init__(self, first: int, frame_s: float, config: SmoothingConfig) -> None:
+        self.first = first
+        self._frame_s = frame_s
+        self._config = config
+        self.positions_m: Float = np.zeros((coco.COUNT, config.knots, 3))
+        self.covariance_m2: Float = np.tile(np.eye(3) * 0.02**2, (coco.COUNT, 1, 1))
+        self.known: Bool = np.zeros((coco.COUNT, config.knots), np.bool_)
+
+    @property
+    def last(self) -> int:
+        """Grid index of the newest position."""
+        return self.first + self._config.knots - 1
+
+    def extend(self) -> None:
+        """Move on by one instant."""
+        self.first += 1
+        self.positions_m[:, :-1] = self.positions_m[:, 1:]
+        self.known[:, :-1] = self.known[:, 1:]
+
+    def foresee(self, index: int, points_m: Float, known: Bool) -> None:
+        """Take grid instant `index`, which pictures do not hold yet, to be at these (17, 3) where `known` (17,)."""
+        self.positions_m[known, index - self.first] = points_m[known]
+        self.known[:, index - self.first] |= known
+
+    def restart(self, joint: int, t_s: float, point_m: Float) -> None:
+        """Take a joint to have been at a position (3,) from `t_s` on, and wherever it was unknown."""
+        instants = (self.first + np.arange(self._config.knots)) * self._frame_s
+        anew = (instants >= t_s) | ~self.known[joint]
+        self.positions_m[joint, anew] = point_m
+        self.known[joint] = True
+
+    def step(self, tracks: Tracks, views: Views, limbs: LimbLengths, index: int, memory_s: float) -> Smoothed:
+        """Improve all positions; read out grid instant `index`, naming views that agree within `memory_s` of it."""
+        config = self._config
+        lengths, sigmas = limbs.current()
+        covariance, seen = smooth_window(
+            self.positions_m,
+            self.known,
+            self.first * self._frame_s,
+            self._frame_s,
+            views.projections,
+            tracks.times_s,
+            tracks.counts,
+            tracks.points_px,
+            tracks.sigma_px,
+            tracks.usable,
+            config.order,
+            1.0 / config.difference_m**2,
+            config.robust_sigmas**2,
+            config.iterations,
+            ENDS,
+            lengths,
+            sigmas,
+            self.covariance_m2,
+            index - self.first,
+            memory_s,
+        )
+        self.covariance_m2 = covariance
+        return Smoothed(self.positions_m[:, index - self.first].copy(), covariance, seen)

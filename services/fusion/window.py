@@ -1,0 +1,264 @@
+"""Compiled solution of the smoother's window; `smoothing.py` says what is solved.
+
+Unknowns are ordered position by position, three coordinates each. Pictures couple four neighbouring positions through cubic
+interpolation and third differences do the same, so the normal equations have a band of twelve.
+"""
+
+import numpy as np
+
+from models.arrays import Bool, Float, UInt32
+from services.fusion.compiled import Counts, compiled
+
+_BAND = 12
+"""Sub-diagonals and the diagonal."""
+
+
+@compiled
+def _cubic(u: float, weights: Float) -> None:
+    """Lagrange weights of positions 0 to 3 at u in [0, 3]."""
+    weights[0] = -(u - 1.0) * (u - 2.0) * (u - 3.0) / 6.0
+    weights[1] = u * (u - 2.0) * (u - 3.0) / 2.0
+    weights[2] = -u * (u - 1.0) * (u - 3.0) / 2.0
+    weights[3] = u * (u - 1.0) * (u - 2.0) / 6.0
+
+
+@compiled
+def _add_block(band: Float, row: int, column: int, block: Float, factor: float) -> None:
+    """Add factor * block (3, 3) for positions row >= column to the lower band."""
+    for k in range(3):
+        for m in range(3):
+            i, j = 3 * row + k, 3 * column + m
+            if i >= j:
+                band[i, i - j] += factor * block[k, m]
+
+
+@compiled
+def _add_pictures(
+    band: Float,
+    right: Float,
+    x: Float,
+    start: float,
+    frame: float,
+    projection: Float,
+    times: Float,
+    count: int,
+    pixels: Float,
+    sigma: Float,
+    usable: Bool,
+    scale2: float,
+    joint: int,
+) -> None:
+    """Linearised robust data terms of one camera."""
+    knots = x.shape[0]
+    weights, point, jacobian, block, pull = np.empty(4), np.empty(3), np.empty((2, 3)), np.empty((3, 3)), np.empty(3)
+    for i in range(count):
+        place = (times[i] - start) / frame
+        if not usable[i, joint] or place < 0.0 or place > knots - 1:
+            continue
+        base = min(max(int(place) - 1, 0), knots - 4)
+        _cubic(place - base, weights)
+        for k in range(3):
+            point[k] = (
+                weights[0] * x[base, k] + weights[1] * x[base + 1, k] + weights[2] * x[base + 2, k] + weights[3] * x[base + 3, k]
+            )
+        w = projection[2, 0] * point[0] + projection[2, 1] * point[1] + projection[2, 2] * point[2] + projection[2, 3]
+        if w <= 1e-6:
+            continue
+        u = (projection[0, 0] * point[0] + projection[0, 1] * point[1] + projection[0, 2] * point[2] + projection[0, 3]) / w
+        v = (projection[1, 0] * point[0] + projection[1, 1] * point[1] + projection[1, 2] * point[2] + projection[1, 3]) / w
+        du, dv = pixels[i, joint, 0] - u, pixels[i, joint, 1] - v
+        variance = sigma[i, joint] * sigma[i, joint]
+        r2 = (du * du + dv * dv) / variance
+        weight = (scale2 / (r2 + scale2)) ** 2 / variance
+        for k in range(3):
+            jacobian[0, k] = (projection[0, k] - u * projection[2, k]) / w
+            jacobian[1, k] = (projection[1, k] - v * projection[2, k]) / w
+        for k in range(3):
+            pull[k] = weight * (jacobian[0, k] * du + jacobian[1, k] * dv)
+            for m in range(3):
+                block[k, m] = weight * (jacobian[0, k] * jacobian[0, m] + jacobian[1, k] * jacobian[1, m])
+        for k in range(3):
+            pull[k] += block[k, 0] * point[0] + block[k, 1] * point[1] + block[k, 2] * point[2]
+        for a in range(4):
+            for k in range(3):
+                right[3 * (base + a) + k] += weights[a] * pull[k]
+            for b in range(a + 1):
+                _add_block(band, base + a, base + b, block, weights[a] * weights[b])
+
+
+@compiled
+def _add_differences(band: Float, knots: int, order: int, strength: float) -> None:
+    stencil = np.array([-1.0, 3.0, -3.0, 1.0]) if order == 3 else np.array([1.0, -2.0, 1.0, 0.0])
+    for first in range(knots - order):
+        for a in range(order + 1):
+            for b in range(a + 1):
+                for k in range(3):
+                    band[3 * (first + a) + k, 3 * (a - b)] += strength * stencil[a] * stencil[b]
+
+
+@compiled
+def _add_limb(band: Float, right: Float, x: Float, other: Float, known: Bool, length: float, sigma: float, spread: Float) -> None:
+    """Pull every position onto the limb's length from its other end, along the limb only."""
+    direction, block = np.empty(3), np.empty((3, 3))
+    for knot in range(x.shape[0]):
+        if not known[knot]:
+            continue
+        distance = 0.0
+        for k in range(3):
+            direction[k] = x[knot, k] - other[knot, k]
+            distance += direction[k] ** 2
+        distance = np.sqrt(distance)
+        if distance < 1e-3:
+            continue
+        variance = sigma * sigma
+        for k in range(3):
+            direction[k] /= distance
+        for k in range(3):
+            for m in range(3):
+                variance += direction[k] * spread[k, m] * direction[m]
+        along = length
+        for k in range(3):
+            along += direction[k] * other[knot, k]
+        for k in range(3):
+            right[3 * knot + k] += direction[k] * along / variance
+            for m in range(3):
+                block[k, m] = direction[k] * direction[m] / variance
+        _add_block(band, knot, knot, block, 1.0)
+
+
+@compiled
+def _factor(band: Float) -> None:
+    """Banded Cholesky in place: band[i, d] becomes L[i, i - d]."""
+    size, width = band.shape
+    for i in range(size):
+        for j in range(max(0, i - width + 1), i + 1):
+            total = band[i, i - j]
+            for k in range(max(0, i - width + 1), j):
+                total -= band[i, i - k] * band[j, j - k]
+            band[i, i - j] = np.sqrt(max(total, 1e-9)) if i == j else total / band[j, 0]
+
+
+@compiled
+def _solve(band: Float, right: Float) -> None:
+    """Solve in place with a factored band."""
+    size, width = band.shape
+    for i in range(size):
+        total = right[i]
+        for k in range(max(0, i - width + 1), i):
+            total -= band[i, i - k] * right[k]
+        right[i] = total / band[i, 0]
+    for i in range(size - 1, -1, -1):
+        total = right[i]
+        for k in range(i + 1, min(size, i + width)):
+            total -= band[k, k - i] * right[k]
+        right[i] = total / band[i, 0]
+
+
+@compiled
+def _agreeing(
+    x: Float,
+    start: float,
+    frame: float,
+    projections: Float,
+    times: Float,
+    counts: Counts,
+    pixels: Float,
+    sigma: Float,
+    usable: Bool,
+    joint: int,
+    instant: float,
+    memory: float,
+) -> int:
+    """Bits of the cameras with a picture near the instant whose residual is within chi-square's 99 %."""
+    weights, bits = np.empty(4), 0
+    for camera in range(projections.shape[0]):
+        for i in range(counts[camera]):
+            place = (times[camera, i] - start) / frame
+            if not usable[camera, i, joint] or abs(times[camera, i] - instant) > memory or place < 0.0 or place > x.shape[0] - 1:
+                continue
+            base = min(max(int(place) - 1, 0), x.shape[0] - 4)
+            _cubic(place - base, weights)
+            point = weights[0] * x[base] + weights[1] * x[base + 1] + weights[2] * x[base + 2] + weights[3] * x[base + 3]
+            p = projections[camera]
+            w = p[2, 0] * point[0] + p[2, 1] * point[1] + p[2, 2] * point[2] + p[2, 3]
+            if w > 1e-6:
+                du = pixels[camera, i, joint, 0] - (p[0, 0] * point[0] + p[0, 1] * point[1] + p[0, 2] * point[2] + p[0, 3]) / w
+                dv = pixels[camera, i, joint, 1] - (p[1, 0] * point[0] + p[1, 1] * point[1] + p[1, 2] * point[2] + p[1, 3]) / w
+                if du * du + dv * dv <= 9.21 * sigma[camera, i, joint] ** 2:
+                    bits |= 1 << camera
+                    break
+    return bits
+
+
+@compiled
+def smooth_window(
+    positions: Float,
+    known: Bool,
+    start: float,
+    frame: float,
+    projections: Float,
+    times: Float,
+    counts: Counts,
+    pixels: Float,
+    sigma: Float,
+    usable: Bool,
+    order: int,
+    strength: Float,
+    scale2: float,
+    iterations: int,
+    ends: Counts,
+    lengths: Float,
+    length_sigmas: Float,
+    spread: Float,
+    index: int,
+    memory: float,
+) -> tuple[Float, UInt32]:
+    """The kernel of `Smoother.step`: positions are improved in place; covariance and agreeing views at `index` come back."""
+    joints, knots = positions.shape[0], positions.shape[1]
+    covariance, views = np.zeros((joints, 3, 3)), np.zeros(joints, np.uint32)
+    band, right = np.empty((3 * knots, _BAND)), np.empty(3 * knots)
+    for j in range(joints):
+        if not known[j].any():
+            continue
+        x = positions[j]
+        for _ in range(iterations):
+            band[:] = 0.0
+            right[:] = 0.0
+            for camera in range(projections.shape[0]):
+                _add_pictures(
+                    band,
+                    right,
+                    x,
+                    start,
+                    frame,
+                    projections[camera],
+                    times[camera],
+                    counts[camera],
+                    pixels[camera],
+                    sigma[camera],
+                    usable[camera],
+                    scale2,
+                    j,
+                )
+            _add_differences(band, knots, order, strength[j])
+            for limb in range(ends.shape[0]):
+                if lengths[limb] > 0.0 and (ends[limb, 0] == j or ends[limb, 1] == j):
+                    other = ends[limb, 1] if ends[limb, 0] == j else ends[limb, 0]
+                    _add_limb(band, right, x, positions[other], known[other], lengths[limb], length_sigmas[limb], spread[other])
+            # A metre of doubt about what was there before keeps what no picture and no neighbour holds in its place.
+            for i in range(3 * knots):
+                band[i, 0] += 1.0
+                right[i] += x[i // 3, i % 3]
+            _factor(band)
+            _solve(band, right)
+            for i in range(3 * knots):
+                x[i // 3, i % 3] = right[i]
+        known[j] = True
+        for k in range(3):
+            right[:] = 0.0
+            right[3 * index + k] = 1.0
+            _solve(band, right)
+            for m in range(3):
+                covariance[j, m, k] = right[3 * index + m]
+        views[j] = _agreeing(x, start, frame, projections, times, counts, pixels, sigma, usable, j, start + index * frame, memory)
+    return covariance, views
