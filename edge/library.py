@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 from edge.observe import PersonDetector, PoseEstimator
 from models.errors import UserError
+from models.messages.control import PoseNetwork as PoseNetworkName
 
 
 class Library:
@@ -19,17 +20,22 @@ class Library:
         first: the pose network to begin with.
     """
 
-    def __init__(self, load_pose: Callable[[str], PoseEstimator], load_detector: Callable[[], PersonDetector], first: str) -> None:
+    def __init__(
+        self,
+        load_pose: Callable[[PoseNetworkName], PoseEstimator],
+        load_detector: Callable[[], PersonDetector],
+        first: PoseNetworkName,
+    ) -> None:
         self._load_pose = load_pose
         self._load_detector = load_detector
-        self._poses = {first: load_pose(first)}
+        self._poses: dict[PoseNetworkName, PoseEstimator] = {first: load_pose(first)}
         self._current = first
         self._detector: PersonDetector | None = None
         self._loading: dict[str, threading.Thread] = {}
         self._problems: dict[str, str] = {}
 
     @property
-    def current(self) -> str:
+    def current(self) -> PoseNetworkName:
         """Name of the pose network in use."""
         return self._current
 
@@ -38,7 +44,7 @@ class Library:
         """Why a network that was asked for is not there; empty if all is well."""
         return "; ".join(self._problems.values())
 
-    def pose(self, name: str) -> PoseEstimator:
+    def pose(self, name: PoseNetworkName) -> PoseEstimator:
         """The pose network of that name; until it is loaded, and if it cannot be, the one that ran last."""
         if name in self._poses:
             self._current = name
@@ -53,7 +59,7 @@ class Library:
             self._detector = self._load_detector()
         return self._detector
 
-    def _load(self, name: str) -> None:
+    def _load(self, name: PoseNetworkName) -> None:
         try:
             self._poses[name] = self._load_pose(name)
         except UserError as error:

@@ -12,6 +12,8 @@ from edge.cameras.video import Schedule, VideoSource, load_video
 from edge.library import Library
 from edge.meter import Meter
 from edge.observe import EdgeConfig, EdgeState, Networks, Stages, observe
+from edge.perception.detection import load_person_detector
+from edge.perception.pose import load_pose_network
 from edge.turns import CONTROL_LIFETIME_NS, default_control, is_due, missed_turns
 from models.config.site import CameraConfig
 from models.errors import UserError
@@ -21,6 +23,8 @@ from models.process import ProcessContext, Subscription
 
 GRAB_TIMEOUT_S = 0.2
 """How long a silent camera keeps the loop from its other duties."""
+DETECTION_SCORE_MIN = 0.25
+"""People seen from the side score little; a track that turns out to be nobody is dropped after one pose."""
 MILLISECOND_NS = 1_000_000
 
 
@@ -30,15 +34,23 @@ def main(context: ProcessContext) -> None:
     Raises:
         UserError: the camera, its file or the first network cannot be had.
     """
-    from edge.perception.networks import load_library  # noqa: PLC0415 - a wrong file is reported before onnxruntime is loaded
-
     cv2.setNumThreads(1)
     clock = MonotonicClock()
     source = open_source(_camera_config(context), context, clock)
     try:
-        EdgeLoop(context, source, load_library(context), clock).run()
+        EdgeLoop(context, source, open_library(context), clock).run()
     finally:
         source.close()
+
+
+def open_library(context: ProcessContext) -> Library:
+    """The networks in the data folder, on the execution provider that the site file names."""
+    provider = context.site.inference.provider
+    return Library(
+        load_pose=lambda name: load_pose_network(name, context.data, provider),
+        load_detector=lambda: load_person_detector(context.data, provider, DETECTION_SCORE_MIN),
+        first="thunder",
+    )
 
 
 def open_source(config: CameraConfig, context: ProcessContext, clock: Clock) -> Source:

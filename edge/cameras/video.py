@@ -23,10 +23,11 @@ class Video:
     size_px: tuple[int, int]
     pictures: tuple[bytes, ...]
 
-    def frames(self) -> Iterator[JpegFrame]:
-        """Every picture once, without a clock (for benches): picture k at k seconds, as there is no rate to go by."""
+    def frames(self, rate_hz: float) -> Iterator[JpegFrame]:
+        """Every picture once, as if played at that rate from time zero, without waiting (for benches and tests)."""
+        schedule = Schedule(0, 0, rate_hz)
         for index in range(len(self.pictures)):
-            yield self.frame(0, index, index * _SECOND_NS)
+            yield self.frame(0, index, schedule.t_ns(index))
 
     def frame(self, epoch: int, index: int, t_mid_ns: int) -> JpegFrame:
         """Picture `index`, stamped."""
