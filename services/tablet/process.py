@@ -6,7 +6,7 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import uvicorn
@@ -36,7 +36,7 @@ def main(context: ProcessContext) -> None:
         UserError: the page is not built, or the port cannot be listened on.
     """
     if not (PAGE / "index.html").is_file():
-        raise UserError("tablet: the page is not built (services/tablet/web/dist is missing); run 'make page'")
+        raise UserError("tablet: the page is not built (services/tablet/web/dist is missing); run 'make web'")
     listener = listen(context.site.tablet)
     site = context.site
     cameras = tuple(camera.name for camera in site.cameras)
@@ -93,7 +93,9 @@ async def _serve(context: ProcessContext, server: TabletServer, listener: socket
     loop = asyncio.get_running_loop()
 
     def hand_over(action: Callable[[], None]) -> None:
-        loop.call_soon_threadsafe(action)
+        # The bus may outlive this server, and its news of tokens with it: nobody is left to tell then.
+        with suppress(RuntimeError):
+            loop.call_soon_threadsafe(action)
 
     def end() -> None:
         web.should_exit = True

@@ -1,0 +1,30 @@
+/** What the page may claim about the figure. Only `live` is coloured. */
+export type Phase =
+  | 'connecting' // no connection yet
+  | 'offline' // the connection is gone
+  | 'waiting' // connected; no pupil is seen
+  | 'stale' // a figure is there, and it is old
+  | 'late' // frames come, and all of them too late: the network is too slow
+  | 'live';
+
+export interface PhaseInputs {
+  connected: boolean;
+  everConnected: boolean;
+  failures: number;
+  /** A figure with at least one seen joint was drawn on this connection. */
+  hasFigure: boolean;
+  stale: boolean;
+  /** Frames were dropped as too late since the last one that was drawn. */
+  dropping: boolean;
+  pupil: 'unknown' | 'searching' | 'found';
+}
+
+/** Attempts that may fail before "connecting" becomes "no connection". */
+const PATIENCE = 3;
+
+export function phaseOf(inputs: PhaseInputs): Phase {
+  if (!inputs.connected) return inputs.everConnected || inputs.failures >= PATIENCE ? 'offline' : 'connecting';
+  if (inputs.hasFigure && !inputs.stale) return 'live';
+  if (inputs.dropping) return 'late';
+  return inputs.hasFigure && inputs.pupil !== 'searching' ? 'stale' : 'waiting';
+}

@@ -1,0 +1,155 @@
+import {
+  ACESFilmicToneMapping,
+  DirectionalLight,
+  HemisphereLight,
+  PCFShadowMap,
+  PerspectiveCamera,
+  Scene,
+  Vector3,
+  WebGLRenderer,
+} from 'three';
+import { Figure } from '../figure/figure';
+import { standing, type Pose } from '../figure/pose';
+import { Floor } from './floor';
+import { firstView, follow, standpoint } from './framing';
+import { Orbit } from './orbit';
+
+const MAX_PIXEL_RATIO = 1.5;
+/** From the standpoint: the light comes from the upper left of the first view, and its shadow covers a pupil who lies down. */
+const LIGHT_OFFSET_M = new Vector3(1.6, 2.6, 5.2);
+const SHADOW_REACH_M = 2.4;
+
+/** The scene: figure, floor, light and view. Draws when something changed, at most once a screen refresh, and not otherwise. */
+export class Stage {
+  /** Pictures drawn since the page was opened. */
+  drawn = 0;
+
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene();
+  private readonly camera = new PerspectiveCamera(32, 1, 0.1, 60);
+  private readonly light = new DirectionalLight(0xffffff, 2.1);
+  private readonly figure = new Figure();
+  private readonly floor = new Floor();
+  private readonly orbit: Orbit;
+  private readonly observer: ResizeObserver;
+  private readonly stand = new Vector3();
+  private pose: Pose = standing();
+  private framed = false;
+  private requested = 0;
+  private lastMs = 0;
+
+  /**
+   * @param canvas where to draw
+   * @param beforeDraw called before each picture; hands over the newest pose by `show`
+   */
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly beforeDraw: () => void,
+  ) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: 'low-power' });
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.renderer.toneMapping = ACESFilmicToneMapping;
+    this.renderer.toneMappingExposure = 1.12;
+    this.camera.up.set(0, 0, 1);
+    this.orbit = new Orbit(this.camera, canvas, () => this.requestDraw());
+    this.light.castShadow = true;
+    this.light.shadow.mapSize.set(1024, 1024);
+    this.light.shadow.radius = 5;
+    this.light.shadow.bias = -0.0006;
+    this.light.shadow.normalBias = 0.012;
+    Object.assign(this.light.shadow.camera, {
+      left: -SHADOW_REACH_M,
+      right: SHADOW_REACH_M,
+      top: SHADOW_REACH_M,
+      bottom: -SHADOW_REACH_M,
+      near: 0.5,
+      far: 12,
+    });
+    const sky = new HemisphereLight(0xffffff, 0xc4cedd, 2.0);
+    sky.position.set(0, 0, 1);
+    this.scene.add(this.figure.group, this.floor.group, this.light, this.light.target, sky);
+    this.show(this.pose);
+    this.observer = new ResizeObserver(() => this.resize());
+    this.observer.observe(canvas);
+  }
+
+  /** Share of the figure that is in colour. */
+  get colouredShare(): number {
+    return this.figure.colouredShare;
+  }
+
+  /** Angle of the view about the vertical, in degrees. */
+  get azimuthDeg(): number {
+    return this.orbit.azimuthDeg;
+  }
+
+  /** Puts the figure into a pose with the next picture. */
+  show(pose: Pose): void {
+    this.pose = pose;
+    this.figure.show(pose);
+    standpoint(pose, this.stand);
+    this.light.target.position.copy(this.stand).setZ(0);
+    this.light.position.copy(this.light.target.position).add(LIGHT_OFFSET_M);
+    this.floor.centre(this.stand.x, this.stand.y);
+    this.requestDraw();
+  }
+
+  /** Another person or another beginning: size and view are chosen anew at the next `reframe`. */
+  startAnew(): void {
+    this.figure.forgetSize();
+    this.framed = false;
+  }
+
+  /** Chooses the first view of this pose, once. */
+  frameOnce(): void {
+    if (this.framed) return;
+    this.framed = true;
+    this.resetView(false);
+  }
+
+  /** Back to the first view, from where the pupil is now. */
+  resetView(gently = true): void {
+    const target = standpoint(this.pose, new Vector3());
+    this.orbit.moveTo(target, firstView(this.pose, target, this.camera), gently);
+  }
+
+  /** Turns the view, in degrees, or brings it nearer by a factor: for the keyboard. */
+  turn(azimuthDeg: number, elevationDeg: number, nearer: number): void {
+    this.orbit.turn(azimuthDeg, elevationDeg, nearer);
+  }
+
+  requestDraw(): void {
+    if (this.requested === 0) this.requested = requestAnimationFrame((nowMs) => this.draw(nowMs));
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.requested);
+    this.requested = -1; // no picture is requested any more
+    this.observer.disconnect();
+    this.orbit.dispose();
+    this.renderer.dispose();
+  }
+
+  private draw(nowMs: number): void {
+    this.requested = 0;
+    this.beforeDraw();
+    const seconds = Math.min((nowMs - this.lastMs) / 1000, 0.1);
+    this.lastMs = nowMs;
+    this.orbit.carry(follow(this.orbit.target, this.stand, seconds, new Vector3()));
+    if (this.orbit.update(nowMs)) this.requestDraw();
+    this.renderer.render(this.scene, this.camera);
+    this.drawn += 1;
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.canvas;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.updateProjectionMatrix();
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, MAX_PIXEL_RATIO));
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    if (!this.orbit.touched) this.resetView(false);
+    this.requestDraw();
+  }
+}

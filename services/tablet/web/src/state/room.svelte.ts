@@ -1,0 +1,17 @@
+import type { Phase } from '../connection/phase';
+import type { Status } from '../protocol/messages';
+
+/** What the words on the page are made of. Changes a few times a second; poses never come through here. */
+export class Room {
+  phase = $state<Phase>('connecting');
+  status = $state.raw<Status | null>(null);
+  /** Age of the figure on the screen, in whole seconds; null while there is none. */
+  figureAgeS = $state<number | null>(null);
+  /** From the shutter to this screen; null while it cannot be known. */
+  delayMs = $state<number | null>(null);
+  roundTripMs = $state<number | null>(null);
+  /** Pictures of the figure drawn in the last second. */
+  drawnHz = $state(0);
+  droppedLate = $state(0);
+  unreadable = $state(0);
+}

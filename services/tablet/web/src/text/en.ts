@@ -1,0 +1,132 @@
+/** Every word on the page. Another language is another file of this shape. */
+
+import type { Phase } from '../connection/phase';
+import type { CameraStatus, ProcessStatus } from '../protocol/messages';
+
+const COUNTS = ['no camera', 'one', 'two', 'three', 'four', 'five', 'six', 'seven', 'eight'];
+
+const listed = (numbers: number[]): string =>
+  numbers.length < 2 ? numbers.join() : `${numbers.slice(0, -1).join(', ')} and ${numbers.at(-1)}`;
+
+const reasons: Record<CameraStatus['reason'], string> = {
+  none: '',
+  starting: 'Getting ready',
+  never_seen: 'Not heard from since the box was started',
+  process_gone: 'Its program stopped; the box restarts it',
+  silent: 'Gives no sign of life',
+  failed: 'Reports a failure',
+  no_frames: 'Sends no pictures; check its cable',
+  degraded: 'Works less well than it should',
+  behind: 'Cannot keep up',
+  backlog: 'Its pictures wait too long',
+  sparse: 'Few pictures a second; fast movement may be missed',
+  resting: 'Resting; other cameras see better',
+};
+
+const phases: Record<Phase, { pill: string; title: string; words: string }> = {
+  connecting: { pill: 'Connecting', title: 'Connecting to the box', words: 'One moment.' },
+  offline: {
+    pill: 'No connection',
+    title: 'No connection to the box',
+    words: 'Trying again. Is the box switched on, and the tablet in its network?',
+  },
+  waiting: {
+    pill: 'Waiting',
+    title: 'Nobody in view',
+    words: 'The figure appears as soon as a pupil stands where two cameras see.',
+  },
+  stale: { pill: 'Interrupted', title: 'No new movement', words: 'The grey figure is the last that was seen.' },
+  late: {
+    pill: 'Too slow',
+    title: 'The network is too slow',
+    words: 'Pictures arrive too late to be shown. Move nearer to the access point.',
+  },
+  live: { pill: 'Live', title: '', words: '' },
+};
+
+const seconds = (s: number): string => (s === 1 ? '1 second' : `${s} seconds`);
+const number = (value: number | null, digits = 0): string => (value === null ? '–' : value.toFixed(digits));
+
+export const text = {
+  product: 'KineBox',
+  phases,
+  staleFor: (s: number): string => `No new movement for ${seconds(s)}`,
+
+  view: {
+    label: 'The pupil in 3D',
+    help: 'Turn the view with the arrow keys, come nearer with plus and minus, and go back to the first view with the key R.',
+    reset: 'Reset view',
+    measured: 'Seen',
+    unsure: 'Not sure',
+  },
+
+  cameras: {
+    title: 'Cameras',
+    name: (index: number): string => `Camera ${index + 1}`,
+    states: { ok: 'Good', slow: 'Slow', lost: 'Lost', starting: 'Starting', unknown: 'Not known' },
+    reasons,
+    rate: (hz: number): string => `${hz.toFixed(0)} a second`,
+    none: 'Not known without a connection',
+    /** One line for the teacher: who is missing, and whether the lesson can go on. */
+    lost: (lost: number[], left: number): string => {
+      const who = lost.length === 1 ? `Camera ${lost[0]} lost` : `Cameras ${listed(lost)} lost`;
+      if (left >= 2) return `${who} – the lesson goes on with ${COUNTS[left] ?? left}`;
+      return `${who} – two cameras are needed for a figure`;
+    },
+    slow: (slow: number[]): string =>
+      slow.length === 1 ? `Camera ${slow[0]} is slow` : `Cameras ${listed(slow)} are slow`,
+  },
+
+  readings: {
+    title: 'Measurements',
+    rate: 'Figures a second',
+    delay: 'Delay',
+    milliseconds: (ms: number | null): string => (ms === null ? '–' : `${Math.round(ms / 10) * 10} ms`),
+    count: (hz: number | null): string => number(hz),
+  },
+
+  details: {
+    open: 'Details',
+    title: 'For the technician',
+    close: 'Close',
+    cameras: 'Cameras',
+    processes: 'Programs of the box',
+    connection: 'This tablet',
+    box: 'The box',
+    noData: 'Nothing is known without a connection to the box.',
+    columns: {
+      camera: 'Camera',
+      fresh: 'Fresh / wished, Hz',
+      source: 'Source, Hz',
+      network: 'Network',
+      backlog: 'Waiting, ms',
+      skipped: 'Skipped',
+      program: 'Program',
+      state: 'State',
+      processor: 'Cores',
+      memory: 'MB',
+    },
+    processStates: {
+      ok: 'ok',
+      degraded: 'degraded',
+      failed: 'failed',
+      silent: 'silent',
+      gone: 'gone',
+    } satisfies Record<ProcessStatus['state'], string>,
+    live: 'Figures a second',
+    latency: 'Shutter to server, median / 95 %',
+    delay: 'Shutter to this screen',
+    roundTrip: 'Way to the box and back',
+    drawn: 'Figures drawn a second',
+    dropped: 'Dropped as too late',
+    unreadable: 'Could not be read',
+    processor: 'Processor in use',
+    epoch: 'Recording loop',
+    clients: 'Tablets',
+    rejected: 'Rejected from bus / tablets',
+    ms: (value: number | null): string => (value === null ? '–' : `${value.toFixed(0)} ms`),
+    pair: (a: number | null, b: number | null, digits = 0): string => `${number(a, digits)} / ${number(b, digits)}`,
+    percent: (share: number | null): string => (share === null ? '–' : `${(100 * share).toFixed(0)} %`),
+    number,
+  },
+};

@@ -1,0 +1,158 @@
+import { Freshness, TOO_LATE_MS, underWayMs } from './connection/freshness';
+import { Link } from './connection/link';
+import { phaseOf, type Phase } from './connection/phase';
+import { complete, showsSomebody, standing, unsure, type Pose } from './figure/pose';
+import { JointState, MotionFrameError, readMotionFrame, type MotionFrame } from './protocol/motionFrame';
+import type { Room } from './state/room.svelte';
+import { Stage } from './stage/stage';
+
+/** Words change at most so often: nobody can read faster. */
+const WORDS_PERIOD_MS = 250;
+const DELAY_GAIN = 0.1;
+
+/** Joins the connection, the stage and the words. Holds the figure outside of the reactive state. */
+export class Viewer {
+  private readonly link: Link;
+  private readonly stage: Stage;
+  private readonly freshness = new Freshness();
+  private readonly words: ReturnType<typeof setInterval>;
+  private waiting: MotionFrame | null = null;
+  private underWay = 0;
+  private pose: Pose = standing();
+  private hasFigure = false;
+  private dropping = false;
+  private epoch: number | null = null;
+  private delayMs: number | null = null;
+  private figures = 0;
+  private counted = { figures: 0, atMs: performance.now() };
+
+  /**
+   * @param canvas where to draw
+   * @param room the words' state
+   * @param root carries what can be observed from outside as `data-` attributes
+   */
+  constructor(
+    canvas: HTMLCanvasElement,
+    private readonly room: Room,
+    private readonly root: HTMLElement,
+  ) {
+    this.stage = new Stage(canvas, () => this.beforeDraw());
+    const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
+    this.link = new Link(`${scheme}://${location.host}/ws`, {
+      motion: (buffer) => this.receive(buffer),
+      status: (status) => (this.room.status = status),
+      changed: () => this.changed(),
+    });
+    this.link.start();
+    this.words = setInterval(() => this.say(), WORDS_PERIOD_MS);
+  }
+
+  resetView(): void {
+    this.stage.resetView();
+  }
+
+  turn(azimuthDeg: number, elevationDeg: number, nearer: number): void {
+    this.stage.turn(azimuthDeg, elevationDeg, nearer);
+  }
+
+  dispose(): void {
+    clearInterval(this.words);
+    this.link.stop();
+    this.stage.dispose();
+  }
+
+  private receive(buffer: ArrayBuffer): void {
+    this.underWay += 1;
+    try {
+      this.waiting = readMotionFrame(buffer); // an older one that was not drawn yet gives way
+    } catch (error) {
+      if (!(error instanceof MotionFrameError)) throw error;
+      this.room.unreadable += 1;
+    }
+    this.stage.requestDraw();
+  }
+
+  /** The newest frame becomes the figure; every frame that came since the last picture is acknowledged. */
+  private beforeDraw(): void {
+    const frame = this.waiting;
+    this.waiting = null;
+    if (frame !== null) this.take(frame, performance.now());
+    this.link.acknowledgeMotions(this.underWay);
+    this.underWay = 0;
+  }
+
+  private take(frame: MotionFrame, nowMs: number): void {
+    const underWay = underWayMs(frame, this.link.clock.boxMs(nowMs));
+    if (underWay !== null && underWay > TOO_LATE_MS) {
+      this.dropping = true;
+      this.room.droppedLate += 1;
+      return;
+    }
+    this.dropping = false;
+    if (!showsSomebody(frame)) return;
+    if (frame.states.includes(JointState.Seen)) this.freshness.note(frame, nowMs);
+    if (this.freshness.isStale(nowMs)) return; // an old observation, or guesses only: `say` turns the figure grey
+    if (this.epoch !== frame.epoch) {
+      this.epoch = frame.epoch;
+      if (!this.hasFigure) this.stage.startAnew();
+    }
+    this.pose = complete(frame, this.pose);
+    this.hasFigure = true;
+    this.figures += 1;
+    this.stage.show(this.pose);
+    this.stage.frameOnce();
+    if (underWay !== null) this.noteDelay(underWay + frame.serverLatencyUs / 1000);
+  }
+
+  private noteDelay(delayMs: number): void {
+    this.delayMs = this.delayMs === null ? delayMs : this.delayMs + DELAY_GAIN * (delayMs - this.delayMs);
+  }
+
+  private changed(): void {
+    this.underWay = 0;
+    this.waiting = null;
+    this.dropping = false;
+    this.epoch = null;
+    if (!this.link.connected) this.room.status = null; // what was known of the cameras is no longer
+    this.freshness.reset();
+    this.hasFigure = false;
+    this.delayMs = null;
+    this.say();
+  }
+
+  private say(): void {
+    const nowMs = performance.now();
+    const phase = phaseOf({
+      connected: this.link.connected,
+      everConnected: this.link.everConnected,
+      failures: this.link.failures,
+      hasFigure: this.hasFigure,
+      stale: this.freshness.isStale(nowMs),
+      dropping: this.dropping,
+      pupil: this.room.status?.pupil ?? 'unknown',
+    });
+    if (phase !== 'live' && this.stage.colouredShare > 0) this.stage.show(unsure(this.pose));
+    this.room.phase = phase;
+    this.room.figureAgeS = this.hasFigure ? Math.floor(this.freshness.ageMs(nowMs) / 1000) : null;
+    this.room.delayMs = phase === 'live' ? this.delayMs : null;
+    this.room.roundTripMs = this.link.clock.roundTripMs;
+    this.countFigures(nowMs);
+    this.expose(phase);
+  }
+
+  private countFigures(nowMs: number): void {
+    const elapsedMs = nowMs - this.counted.atMs;
+    if (elapsedMs < 1000) return;
+    this.room.drawnHz = ((this.figures - this.counted.figures) * 1000) / elapsedMs;
+    this.counted = { figures: this.figures, atMs: nowMs };
+  }
+
+  private expose(phase: Phase): void {
+    const data = this.root.dataset;
+    data['phase'] = phase;
+    data['figures'] = String(this.figures);
+    data['drawn'] = String(this.stage.drawn);
+    data['coloured'] = this.stage.colouredShare.toFixed(2);
+    data['azimuth'] = this.stage.azimuthDeg.toFixed(1);
+  }
+}

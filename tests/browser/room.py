@@ -1,0 +1,205 @@
+"""A room without cameras: the real tablet process on the bus in memory, and a person who walks because the test says so."""
+
+import socket
+import threading
+import time
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from models.camera.rig import Rig
+from models.config.site import CameraConfig, Site, TabletConfig
+from models.messages import codec, topics
+from models.messages.health import CameraHealth, FusionHealth, Health
+from models.messages.motion import CameraUse, JointState, Motion
+from models.process import ProcessContext, Resources
+from models.skeleton import coco
+from services.bus.memory import MemoryBus, MemoryRouter
+from services.tablet import process
+from tests.synthetic.gym import ring_rig
+from tests.synthetic.person import Person
+
+CAMERAS = ("cam0", "cam1", "cam2", "cam3")
+LIVE_HZ = 30.0
+
+
+def free_port() -> int:
+    """A port that nothing listens on at the moment."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+@dataclass
+class Scene:
+    """What the synthetic fusion and cameras say from now on.
+
+    Attributes:
+        speed: of the person's time against the clock; 0 stands still and goes on being published.
+        publishing: whether motions are sent at all.
+        states: (17,) state of each joint.
+        lost: cameras whose processes are gone.
+        fresh_hz: inferences a second of every camera.
+        pupil: what fusion says about the pupil.
+    """
+
+    speed: float = 1.0
+    publishing: bool = True
+    states: dict[int, JointState] = field(default_factory=dict)
+    lost: frozenset[str] = frozenset()
+    fresh_hz: float = 14.6
+    pupil: str = "found"
+
+
+class Room:
+    """Bus, publishers and server of one synthetic room; `page` is where it is to be seen."""
+
+    def __init__(self, port: int | None = None, person: Person | None = None) -> None:
+        self.scene = Scene()
+        self.port = port or free_port()
+        self.person = person or Person(height_m=1.6, radius_m=0.7)
+        self._router = MemoryRouter()
+        self._fusion = self._router.open()
+        self._edges: dict[str, MemoryBus] = {}
+        self._stop = threading.Event()
+        self._server: _Server | None = None
+        self._publisher = threading.Thread(target=self._publish, name="synthetic-room", daemon=True)
+
+    @property
+    def page(self) -> str:
+        """Address of the page."""
+        return f"http://127.0.0.1:{self.port}/"
+
+    def __enter__(self) -> "Room":
+        self._fusion.declare_alive(topics.alive("fusion"))
+        self._publisher.start()
+        self.start_server()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop_server()
+        self._stop.set()
+        self._publisher.join()
+        self._fusion.close()
+
+    def start_server(self) -> None:
+        """Have the tablet process listen."""
+        self._server = _Server(self._router, self.port)
+
+    def stop_server(self) -> None:
+        """End the tablet process, as when its box loses power."""
+        if self._server is not None:
+            self._server.stop()
+            self._server = None
+
+    def _publish(self) -> None:
+        sequence, t_person_s, healthy_ns = 0, 0.0, 0
+        while not self._stop.wait(1 / LIVE_HZ):
+            scene = self.scene
+            now_ns = time.monotonic_ns()
+            t_person_s += scene.speed / LIVE_HZ
+            if scene.publishing:
+                motion = self._motion(scene, sequence, t_person_s, now_ns)
+                self._fusion.publish(topics.motion("live"), codec.encode(motion))
+                sequence += 1
+            self._keep_edges(scene)
+            if now_ns - healthy_ns > 1_000_000_000:
+                healthy_ns = now_ns
+                self._publish_health(scene, now_ns)
+
+    def _motion(self, scene: Scene, sequence: int, t_person_s: float, now_ns: int) -> Motion:
+        states = np.full(coco.COUNT, JointState.SEEN, np.uint8)
+        for joint, state in scene.states.items():
+            states[joint] = state
+        known = states[:, None] != JointState.UNKNOWN
+        joints_m = np.where(known, self.person.joints(t_person_s), 0.0).astype(np.float32)
+        t_newest_ns = now_ns - 95_000_000
+        return Motion(
+            kind="live",
+            sequence=sequence,
+            epoch=0,
+            t_ns=t_newest_ns - 20_000_000,
+            t_newest_ns=t_newest_ns,
+            t_published_ns=now_ns,
+            joints_m=joints_m,
+            covariance_m2=np.tile(np.eye(3, dtype=np.float32) * np.float32(1.2e-4), (coco.COUNT, 1, 1)),
+            states=states,
+            views=np.where(states == JointState.SEEN, 0b1111, 0).astype(np.uint32),
+            cameras=tuple(CameraUse(camera, camera not in scene.lost, 40.0) for camera in CAMERAS),
+        )
+
+    def _keep_edges(self, scene: Scene) -> None:
+        for camera in CAMERAS:
+            if camera in scene.lost and camera in self._edges:
+                self._edges.pop(camera).close()
+            elif camera not in scene.lost and camera not in self._edges:
+                self._edges[camera] = self._router.open()
+                self._edges[camera].declare_alive(topics.alive(f"edge-{camera}"))
+
+    def _publish_health(self, scene: Scene, now_ns: int) -> None:
+        for index, (camera, bus) in enumerate(self._edges.items()):
+            rates = CameraHealth(camera, 30.0, scene.fresh_hz - 0.3 * index, 15.0, 12 + 7 * index, 21.0 + 3 * index, "thunder", {})
+            self._say(bus, Health(f"edge-{camera}", 100 + index, now_ns, "ok", "", 0.36, 214.0, camera=rates))
+        fusion = FusionHealth(29.8, 4.2, 0.83, 0, "found" if scene.pupil == "found" else "searching")
+        self._say(self._fusion, Health("fusion", 99, now_ns, "ok", "", 0.21, 186.0, fusion=fusion))
+
+    def _say(self, bus: MemoryBus, health: Health) -> None:
+        bus.publish(topics.health(health.process), codec.encode(health))
+
+
+class _Server:
+    """The tablet process in a thread of its own."""
+
+    def __init__(self, router: MemoryRouter, port: int) -> None:
+        self._bus = router.open()
+        self._stop = threading.Event()
+        self._context = ProcessContext(
+            name="tablet",
+            camera=None,
+            site=_site(port),
+            rig=_rig(),
+            data=process.PAGE,
+            start_ns=time.monotonic_ns(),
+            bus=self._bus,
+            stop=self._stop,
+            resources=lambda: Resources(0.03, 61.0),
+        )
+        self._thread = threading.Thread(target=process.main, args=(self._context,), name="tablet-server", daemon=True)
+        self._thread.start()
+        _wait_until_listening(port, self._thread)
+
+    def stop(self) -> None:
+        self._stop.set()
+        self._thread.join()
+        self._bus.close()
+
+
+def _rig() -> Rig:
+    return ring_rig(len(CAMERAS))
+
+
+def _site(port: int) -> Site:
+    cameras = [CameraConfig(name=name, kind="video", path=f"{name}.mp4") for name in CAMERAS]
+    return Site(
+        version=1,
+        name="Gym of the village school",
+        calibration="calibration.toml",
+        cameras=cameras,
+        tablet=TabletConfig(host="127.0.0.1", port=port),
+    )
+
+
+def _wait_until_listening(port: int, thread: threading.Thread) -> None:
+    deadline_s = time.monotonic() + 30
+    while time.monotonic() < deadline_s and thread.is_alive():
+        with socket.socket() as probe:
+            if probe.connect_ex(("127.0.0.1", port)) == 0:
+                return
+        time.sleep(0.02)
+    raise RuntimeError(f"the tablet process does not listen on port {port}")
+
+
+def with_scene(room: Room, **changes: object) -> None:
+    """Change what the room says, in one step."""
+    room.scene = replace(room.scene, **changes)  # type: ignore[arg-type]
