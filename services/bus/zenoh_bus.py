@@ -23,7 +23,7 @@ LEASE_MS = 2000
 """A peer that has been silent for so long is taken for dead. A process that was killed is noticed at once."""
 
 _RETRY_FIRST_S = 0.05
-_RETRY_LONGEST_S = 1.0
+_RETRY_LONGEST_S = 0.2
 
 _COMMON: dict[str, Any] = {
     "adminspace/enabled": False,
@@ -64,7 +64,7 @@ def open_client(endpoint: str, stop: threading.Event) -> ZenohBus | None:
         "connect/endpoints": [endpoint],
         # A session that waits in `open` cannot be told to stop, hence no time limit there and the loop here.
         "connect/timeout_ms": 0,
-        "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2.0},
+        "connect/retry": {"period_init_ms": 100, "period_max_ms": 400, "period_increase_factor": 2.0},
     }
     wait_s = _RETRY_FIRST_S
     while not stop.is_set():

@@ -1,0 +1,94 @@
+"""The command line. Each command imports what it needs when it runs, so that help and errors come at once."""
+
+import sys
+from importlib.metadata import version as installed_version
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from models.errors import UserError
+
+SiteFile = Annotated[Path, typer.Option("--site", help="The site file.", dir_okay=False)]
+DataFolder = Annotated[Path, typer.Option("--data", help="The folder with networks and footage.", file_okay=False)]
+
+app = typer.Typer(
+    help="Four cameras in a school gym, one thing to correct on the teacher's tablet.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+config_app = typer.Typer(help="Look at a site file.", no_args_is_help=True)
+app.add_typer(config_app, name="config")
+
+
+def main() -> None:
+    """Entry point of `kinebox`: an error for people is one line and exit code 2, any other keeps its traceback."""
+    try:
+        app()
+    except UserError as error:
+        typer.echo(f"kinebox: {' '.join(str(error).split())}", err=True)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        sys.exit(130)
+
+
+@app.command()
+def run(site: SiteFile, data: DataFolder = Path("build")) -> None:
+    """Start the whole box, watch over it, and end it on Ctrl-C."""
+    from services.supervisor.supervise import supervise  # noqa: PLC0415
+
+    supervise(site, data)
+
+
+@app.command()
+def process(
+    name: Annotated[str, typer.Argument(help="The process: fusion, edge or tablet.")],
+    site: SiteFile,
+    data: DataFolder = Path("build"),
+    camera: Annotated[str | None, typer.Option(help="The camera that an edge process serves.")] = None,
+    start_ns: Annotated[int | None, typer.Option(help="Monotonic time in ns that all processes count from.")] = None,
+    parent: Annotated[int | None, typer.Option(help="End when this process, the parent, is gone.")] = None,
+) -> None:
+    """Run one process of the box on its own."""
+    from services.supervisor.lifeline import end_with_parent  # noqa: PLC0415
+
+    if parent is not None and not end_with_parent(parent):
+        return
+    from services.cli.process import ProcessOrder, run_process  # noqa: PLC0415
+    from services.support import logs  # noqa: PLC0415
+
+    order = ProcessOrder(name, site, data, camera, start_ns)
+    logs.configure(order.name)
+    run_process(order)
+
+
+@config_app.command("check")
+def config_check(file: Annotated[Path, typer.Argument(help="The site file.", dir_okay=False)]) -> None:
+    """Check a site file and its calibration."""
+    from services.support.site_files import read_site  # noqa: PLC0415
+
+    site, rig = read_site(file)
+    typer.echo(f"{file} is good: '{site.name}' with {len(rig)} calibrated cameras ({', '.join(rig.names)})")
+
+
+@config_app.command("show")
+def config_show(file: Annotated[Path, typer.Argument(help="The site file.", dir_okay=False)]) -> None:
+    """Print a site file with every value that it leaves to its default."""
+    import msgspec  # noqa: PLC0415
+
+    from services.support.site_files import read_site  # noqa: PLC0415
+
+    site, _ = read_site(file)
+    typer.echo(msgspec.json.format(msgspec.json.encode(site), indent=2).decode())
+
+
+@app.command()
+def version() -> None:
+    """Print the version."""
+    typer.echo(installed_version("kinebox"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,98 @@
+"""Run one process of the box: read the site, join the bus, and hand over until told to stop."""
+
+import os
+import signal
+import threading
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from models.errors import UserError
+from models.process import Bus, ProcessContext
+from services.cli.parts import find_process, load_process
+from services.support.health import ResourceMeter
+from services.support.site_files import read_site
+
+ROUTER = "fusion"
+"""The process that is the bus's router."""
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+@dataclass(frozen=True)
+class ProcessOrder:
+    """What to run: the process's entry point, and for an edge process its camera.
+
+    `start_ns` is shared by all processes of one run; None is now.
+    """
+
+    entry: str
+    site: Path
+    data: Path
+    camera: str | None = None
+    start_ns: int | None = None
+
+    @property
+    def name(self) -> str:
+        """The name on the bus."""
+        return self.entry if self.camera is None else f"{self.entry}-{self.camera}"
+
+
+def run_process(order: ProcessOrder) -> None:
+    """Run until SIGTERM or SIGINT; a second signal ends it at once.
+
+    Raises:
+        UserError: the site, the bus or the process itself cannot work.
+    """
+    stop = stop_on_signals()
+    site, rig = read_site(order.site)
+    if order.camera is not None and order.camera not in rig.names:
+        raise UserError(f"camera '{order.camera}' is not in {order.site}, which has {', '.join(rig.names)}; correct its name")
+    entry = find_process(order.entry)
+    from services.bus.zenoh_bus import open_client, open_router  # noqa: PLC0415 - a wrong site file shall not wait for it
+
+    bus: Bus | None
+    if order.entry == ROUTER:
+        # The router first, because everybody waits for it.
+        bus = open_router(site.bus.endpoint)
+        main = load_process(entry)
+    else:
+        main = load_process(entry)
+        bus = open_client(site.bus.endpoint, stop)
+    if bus is None:
+        return
+    context = ProcessContext(
+        name=order.name,
+        camera=order.camera,
+        site=site,
+        rig=rig,
+        data=order.data,
+        start_ns=time.monotonic_ns() if order.start_ns is None else order.start_ns,
+        bus=bus,
+        stop=stop,
+        resources=ResourceMeter(),
+    )
+    try:
+        main(context)
+    finally:
+        bus.close()
+
+
+def stop_on_signals() -> threading.Event:
+    """An event that the first SIGTERM or SIGINT sets; the second one ends the process.
+
+    A thread waits for the signals. A handler would run on the main thread, in between two of its instructions: setting an
+    event from there can wait for ever for the lock that the interrupted instruction holds, and it has to wait for long
+    calls into compiled code.
+    """
+    stop = threading.Event()
+    signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
+
+    def wait() -> None:
+        signal.sigwait(_SIGNALS)
+        stop.set()
+        received = signal.sigwait(_SIGNALS)
+        os._exit(128 + received)
+
+    threading.Thread(target=wait, name="signals", daemon=True).start()
+    return stop

@@ -1,0 +1,75 @@
+"""How this process is: what it uses, said once a second on the bus."""
+
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Literal
+
+from models.messages import codec, topics
+from models.messages.health import CameraHealth, FusionHealth, Health
+from models.process import ProcessContext, Resources
+
+PERIOD_S = 1.0
+_PAGE_MB = os.sysconf("SC_PAGE_SIZE") / 2**20
+_STATM = Path("/proc/self/statm")
+
+
+class ResourceMeter:
+    """CPU and memory of this process with all its threads. Each reading of the CPU covers the time since the one before."""
+
+    def __init__(self) -> None:
+        self._wall_s = time.monotonic()
+        self._cpu_s = time.process_time()
+
+    def __call__(self) -> Resources:
+        """Read the clocks and the resident memory."""
+        wall_s, cpu_s = time.monotonic(), time.process_time()
+        elapsed_s, used_s = wall_s - self._wall_s, cpu_s - self._cpu_s
+        self._wall_s, self._cpu_s = wall_s, cpu_s
+        pages = int(_STATM.read_text().split()[1])
+        return Resources(used_s / elapsed_s if elapsed_s > 0 else 0.0, pages * _PAGE_MB)
+
+
+class HealthReporter:
+    """Publishes the health of one process. A loop asks `due` as often as it likes and calls `report` when it says so.
+
+    Args:
+        context: of the process.
+        clock_ns: CLOCK_MONOTONIC.
+    """
+
+    def __init__(self, context: ProcessContext, clock_ns: Callable[[], int] = time.monotonic_ns) -> None:
+        self._context = context
+        self._clock_ns = clock_ns
+        self._next_ns = clock_ns()
+
+    def due(self) -> bool:
+        """Whether a second has passed since the last report; true at first."""
+        return self._clock_ns() >= self._next_ns
+
+    def report(
+        self,
+        state: Literal["ok", "degraded", "failed"] = "ok",
+        reason: str = "",
+        *,
+        camera: CameraHealth | None = None,
+        fusion: FusionHealth | None = None,
+    ) -> Health:
+        """Publish how this process is, and return what was published."""
+        now_ns = self._clock_ns()
+        self._next_ns = now_ns + round(PERIOD_S * 1e9)
+        used = self._context.resources()
+        health = Health(
+            process=self._context.name,
+            pid=os.getpid(),
+            t_ns=now_ns,
+            state=state,
+            reason=reason,
+            cpu_cores=used.cpu_cores,
+            rss_mb=used.rss_mb,
+            camera=camera,
+            fusion=fusion,
+        )
+        self._context.bus.publish(topics.health(health.process), codec.encode(health))
+        return health

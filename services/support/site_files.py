@@ -1,0 +1,31 @@
+"""Reading a site: its file and the calibration that it names."""
+
+from pathlib import Path
+
+from models.camera.rig import Rig, decode_rig
+from models.config.site import Site, decode_site
+from models.errors import UserError
+
+
+def read_site(path: Path) -> tuple[Site, Rig]:
+    """The site of a file, and the calibration of its cameras in the site's order.
+
+    Raises:
+        UserError: a file is missing or unreadable, a key or value is wrong, or a camera has no calibration.
+    """
+    site = decode_site(_read(path, "site file"), path)
+    calibration = path.parent / site.calibration
+    rig = decode_rig(_read(calibration, "calibration"), str(calibration))
+    try:
+        return site, rig.select([camera.name for camera in site.cameras])
+    except UserError as error:
+        raise UserError(f"site file {path}: {error}") from error
+
+
+def _read(path: Path, what: str) -> bytes:
+    try:
+        return path.read_bytes()
+    except FileNotFoundError as error:
+        raise UserError(f"{what} {path} does not exist; correct its path") from error
+    except OSError as error:
+        raise UserError(f"{what} {path} cannot be read: {error.strerror}; correct its path or its permissions") from error
