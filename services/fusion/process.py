@@ -1,0 +1,172 @@
+"""The fusion process: observations in; motion, view control and health out. Thin: all thinking is in `pipeline` and `governor`."""
+
+import os
+import time
+from dataclasses import dataclass
+
+import msgspec
+import structlog
+
+from models.messages import codec, topics
+from models.messages.control import ViewControl
+from models.messages.health import CameraHealth, FusionHealth, Health
+from models.messages.motion import Motion
+from models.messages.observation import Observation
+from models.process import Delivery, ProcessContext
+from services.fusion import governor
+from services.fusion.config import PRESETS
+from services.fusion.governor import GovernorState, Load
+from services.fusion.pipeline import FusionOutput, Tick, initial_state, predict_views, step
+from services.fusion.warm_up import warm_up
+from services.support.cpu import CpuMeter
+
+KEEP = 2
+"""Unread messages of each topic; older ones would only show the past."""
+CONTROL_EVERY_TICKS = 3
+SECOND_NS = 1_000_000_000
+CAMERA_SILENT_NS = 3 * SECOND_NS
+"""A camera whose health is older than this takes no part in the governor's plan."""
+
+log = structlog.get_logger()
+
+
+def main(context: ProcessContext) -> None:
+    """Serve until told to stop."""
+    warm_up()
+    FusionLoop(context, CpuMeter()).run()
+
+
+@dataclass
+class _Second:
+    """Counted between two health messages."""
+
+    began_ns: int
+    live: int = 0
+    ticks: int = 0
+    spent_ns: int = 0
+
+
+class FusionLoop:
+    """The loop of `main`, with everything from outside passed in."""
+
+    def __init__(self, context: ProcessContext, cpu: CpuMeter) -> None:
+        self._context = context
+        self._bus = context.bus
+        self._cpu = cpu
+        self._config = PRESETS[context.site.fusion.preset]
+        self._state = initial_state(context.rig, self._config)
+        self._governor = GovernorState()
+        self._names = context.rig.names
+        self._observations = {topics.observation(name) for name in self._names}
+        self._searching: dict[str, bool] = {}
+        self._found = False
+        self._cameras: dict[str, tuple[int, CameraHealth]] = {}
+        self._controls = 0
+        self._rejected = 0
+        self._second = _Second(time.monotonic_ns())
+
+    def run(self) -> None:
+        """Take observations as they come and tick at the live rate; ticks that were missed are not made up for."""
+        self._bus.declare_alive(topics.alive(self._context.name))
+        subscription = self._bus.subscribe(*sorted(self._observations), topics.ALL_HEALTH, keep=KEEP)
+        period_ns = round(SECOND_NS / self._context.site.fusion.live_hz)
+        tick_ns = time.monotonic_ns()
+        ticks = 0
+        try:
+            while not self._context.stop.is_set():
+                delivery = subscription.receive(max((tick_ns - time.monotonic_ns()) * 1e-9, 0.0))
+                if delivery is not None:
+                    self._receive(delivery)
+                now_ns = time.monotonic_ns()
+                if now_ns < tick_ns:
+                    continue
+                self._step(Tick(tick_ns))
+                if ticks % CONTROL_EVERY_TICKS == 0:
+                    self._control(now_ns)
+                ticks += 1
+                tick_ns += ((now_ns - tick_ns) // period_ns + 1) * period_ns
+                if now_ns - self._second.began_ns >= SECOND_NS:
+                    self._report(now_ns)
+        finally:
+            subscription.close()
+
+    def _receive(self, delivery: Delivery) -> None:
+        try:
+            if delivery.topic in self._observations:
+                self._step(codec.decode(delivery.payload, Observation))
+                return
+            camera = codec.decode(delivery.payload, Health).camera
+        except codec.CodecError as error:
+            self._rejected += 1
+            log.warning("message refused", topic=delivery.topic, reason=str(error))
+            return
+        if camera is not None and camera.camera in self._names:
+            self._cameras[camera.camera] = (time.monotonic_ns(), camera)
+
+    def _step(self, event: Observation | Tick) -> None:
+        began_ns = time.thread_time_ns()
+        self._state, output = step(self._state, event, self._config)
+        self._second.spent_ns += time.thread_time_ns() - began_ns
+        self._found = output.found
+        if isinstance(event, Tick):
+            self._second.ticks += 1
+            self._publish(output)
+
+    def _publish(self, output: FusionOutput) -> None:
+        if output.searching:
+            self._searching = output.searching
+        for motion in output.motions:
+            self._second.live += motion.kind == "live"
+            stamped: Motion = msgspec.structs.replace(motion, t_published_ns=time.monotonic_ns())
+            self._bus.publish(topics.motion(motion.kind), codec.encode(stamped))
+
+    def _control(self, now_ns: int) -> None:
+        """Tell every camera its rate, its network, its place in the turn, and where to look."""
+        level = self._governor.current
+        predictions = predict_views(self._state, now_ns)
+        self._controls += 1
+        for position, name in enumerate(self._names):
+            control = ViewControl(
+                camera=name,
+                sequence=self._controls,
+                t_ns=now_ns,
+                rate_hz=level.rate_hz,
+                offset_ns=self._context.start_ns + governor.turn_offset_ns(position, len(self._names), level.rate_hz),
+                network=level.network,
+                search=self._searching.get(name, True),
+                prediction=predictions[name],
+            )
+            self._bus.publish(topics.control(name), codec.encode(control))
+
+    def _report(self, now_ns: int) -> None:
+        second, seconds = self._second, (now_ns - self._second.began_ns) * 1e-9
+        self._second = _Second(now_ns)
+        alive = {name: camera for name, (t_ns, camera) in self._cameras.items() if now_ns - t_ns < CAMERA_SILENT_NS}
+        used_cores = self._cpu.used_cores()
+        load = Load(self._cpu.granted_cores, used_cores, tuple(alive.values()))
+        inference = self._context.site.inference
+        before = self._governor
+        self._governor = governor.step(before, load, now_ns, float(inference.max_rate_hz), inference.cpu_target)
+        if self._governor.level != before.level:
+            level = self._governor.current
+            log.info("governor", rate_hz=level.rate_hz, network=level.network, used_cores=round(used_cores, 2))
+        resources = self._context.resources()
+        missing = [name for name in self._names if name not in alive]
+        reason = f"no word from {', '.join(missing)}" if missing else ""
+        health = Health(
+            process=self._context.name,
+            pid=os.getpid(),
+            t_ns=now_ns,
+            state="degraded" if missing else "ok",
+            reason=reason,
+            cpu_cores=resources.cpu_cores,
+            rss_mb=resources.rss_mb,
+            fusion=FusionHealth(
+                live_hz=second.live / seconds,
+                step_ms=second.spent_ns * 1e-6 / max(second.ticks, 1),
+                cpu_load=used_cores / self._cpu.granted_cores,
+                rejected=self._rejected,
+                pupil="found" if self._found else "searching",
+            ),
+        )
+        self._bus.publish(topics.health(self._context.name), codec.encode(health))

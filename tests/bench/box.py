@@ -1,0 +1,234 @@
+"""Live rate, latency, CPU and memory of the whole box, as `kinebox run` starts it.
+
+Four sources play in real time, all processes run, and a socket client (this process; no rendering browser) receives the
+live figure as a tablet would and acknowledges it. Fresh inferences are counted on the bus from the observations themselves,
+so that interpolation can't fake them. Then the same confined to one core.
+"""
+
+import argparse
+import contextlib
+import json
+import os
+import signal
+import statistics
+import subprocess
+import sys
+import threading
+import time
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import psutil
+from websockets.exceptions import WebSocketException
+from websockets.sync.client import connect
+
+from models.config.site import Site, decode_site
+from models.messages import codec, topics
+from models.messages.health import Health
+from models.messages.motion import JointState
+from models.messages.observation import Observation
+from services.bus.zenoh_bus import ZenohBus
+from services.tablet import motion_frame
+from tests.bench.report import Report
+
+WARM_S = 60
+MIN_JOINTS_SEEN = 9
+"""A motion counts as a fused pose if more than half of the joints were seen by two views."""
+BARS = {
+    "live_fps": (">=", 30.0),
+    "fresh_hz.min": (">=", 10.0),
+    "latency_ms.p95": ("<=", 250.0),
+    "rss_growth_pct": ("<=", 2.0),
+    "half_quota.fresh_hz.min": (">=", 5.0),
+}
+
+
+@dataclass
+class Heard:
+    """Everything that was measured while listening, with the time of receipt in monotonic nanoseconds."""
+
+    motions: list[tuple[int, int, int]] = field(default_factory=list)  # receipt, newest observation, joints seen
+    frames: dict[str, set[tuple[int, int]]] = field(default_factory=lambda: defaultdict(set))  # (epoch, frame) per camera
+    stage_ms: dict[str, list[float]] = field(default_factory=lambda: defaultdict(list))
+    edge_total_ms: list[float] = field(default_factory=list)
+    plans: set[str] = field(default_factory=set)
+    backlog_ms: list[float] = field(default_factory=list)
+
+
+@dataclass
+class Memory:
+    """Resident memory by process over time."""
+
+    samples: list[tuple[float, dict[str, float]]] = field(default_factory=list)
+
+    def take(self, box: psutil.Process, seconds: float) -> None:
+        """One sample of every process of the box."""
+        self.samples.append((seconds, {name: process.memory_info().rss / 2**20 for name, process in processes(box).items()}))
+
+    def growth_pct(self) -> float:
+        """Sum over all processes, the last minute over the second."""
+        second = [sum(rss.values()) for at, rss in self.samples if 60 <= at < 120]
+        last = [sum(rss.values()) for at, rss in self.samples if at >= self.samples[-1][0] - 60]
+        return 100 * (statistics.mean(last) / statistics.mean(second) - 1) if second and last else float("nan")
+
+
+def processes(box: psutil.Process) -> dict[str, psutil.Process]:
+    """The box's processes by their name on the bus."""
+    found = {"supervisor": box}
+    for child in box.children(recursive=True):
+        with contextlib.suppress(psutil.Error, IndexError, ValueError):
+            command = child.cmdline()
+            found[command[command.index("process") + 1]] = child
+    return found
+
+
+@contextlib.contextmanager
+def running_box(site: Path, data: Path, cpus: set[int] | None) -> Iterator[psutil.Process]:
+    """`kinebox run` in a process group of its own, ended by SIGTERM."""
+    log = data / "bench" / "box.log"
+    log.parent.mkdir(parents=True, exist_ok=True)
+    with log.open("wb") as output:
+        command = ["kinebox", "run", "--site", str(site), "--data", str(data)]
+        if cpus is not None:
+            command = ["taskset", "-c", ",".join(map(str, sorted(cpus))), *command]
+        popen = subprocess.Popen(command, stdout=output, stderr=output, start_new_session=True)
+        try:
+            yield psutil.Process(popen.pid)
+        finally:
+            popen.terminate()
+            try:
+                popen.wait(15)
+            except subprocess.TimeoutExpired:
+                os.killpg(popen.pid, signal.SIGKILL)
+                raise
+
+
+def watch_page(url: str, heard: Heard, stop: threading.Event) -> None:
+    """Be a tablet: receive, decode, acknowledge."""
+    while not stop.is_set():
+        try:
+            with connect(url, compression=None, open_timeout=2) as socket:
+                counts = {"motions": 0, "statuses": 0}
+                while not stop.is_set():
+                    message = socket.recv(timeout=5)
+                    now_ns = time.monotonic_ns()
+                    if isinstance(message, bytes):
+                        frame = motion_frame.unpack(message)
+                        heard.motions.append((now_ns, frame.t_newest_ns, int((frame.states == JointState.SEEN).sum())))
+                        counts["motions"] += 1
+                    else:
+                        counts["statuses"] += 1
+                    socket.send(json.dumps({"type": "ack", **counts}))
+        except (OSError, TimeoutError, WebSocketException):
+            time.sleep(0.2)
+
+
+def watch_bus(site: Site, heard: Heard, stop: threading.Event) -> None:
+    """Count fresh frames from the observations, and take the cameras' stage times from their health."""
+    bus = ZenohBus.client(site.bus.endpoint)
+    subscription = bus.subscribe(*(topics.observation(camera.name) for camera in site.cameras), topics.ALL_HEALTH, keep=64)
+    while not stop.is_set():
+        delivery = subscription.receive(0.5)
+        if delivery is None:
+            continue
+        if delivery.topic.endswith("/observation"):
+            observation = codec.decode(delivery.payload, Observation)
+            heard.frames[observation.camera].add((observation.epoch, observation.frame))
+            continue
+        camera = codec.decode(delivery.payload, Health).camera
+        if camera is not None and camera.stage_ms:
+            for stage, value in camera.stage_ms.items():
+                heard.stage_ms[stage].append(value)
+            heard.edge_total_ms.append(sum(camera.stage_ms.values()))
+            heard.plans.add(f"{camera.target_hz:g} Hz {camera.network}")
+            heard.backlog_ms.append(camera.backlog_ms)
+    bus.close()
+
+
+def measure(site_path: Path, data: Path, seconds: float, warm_s: float, cpus: set[int] | None) -> dict[str, float]:
+    """Run the box, let it warm up, listen for `seconds`."""
+    site = decode_site(site_path.read_bytes(), site_path)
+    stop, heard, memory = threading.Event(), Heard(), Memory()
+    with running_box(site_path, data, cpus) as box:
+        listeners = [
+            threading.Thread(target=watch_page, args=(f"ws://127.0.0.1:{site.tablet.port}/ws", heard, stop)),
+            threading.Thread(target=watch_bus, args=(site, heard, stop)),
+        ]
+        for listener in listeners:
+            listener.start()
+        started = time.monotonic()
+        try:
+            memory_until(box, memory, started, warm_s)
+            for collected in (heard.motions, heard.frames, heard.stage_ms, heard.edge_total_ms, heard.plans, heard.backlog_ms):
+                collected.clear()
+            cpu_before, began = cpu_seconds(box), time.monotonic()
+            memory_until(box, memory, started, warm_s + seconds)
+            elapsed = time.monotonic() - began
+            cpu = cpu_seconds(box) - cpu_before
+        finally:
+            stop.set()
+            for listener in listeners:
+                listener.join(10)
+    print(f"plans in force: {', '.join(sorted(heard.plans))}")
+    return summary(heard, memory, elapsed, cpu)
+
+
+def memory_until(box: psutil.Process, memory: Memory, started: float, end_s: float) -> None:
+    """Sample memory every two seconds until `end_s` after `started`."""
+    while (at := time.monotonic() - started) < end_s:
+        if not box.is_running():
+            raise SystemExit("the box ended; see bench/box.log in the data folder")
+        memory.take(box, at)
+        time.sleep(min(2.0, max(end_s - at, 0.0)))
+
+
+def cpu_seconds(box: psutil.Process) -> float:
+    """CPU used so far by all processes of the box."""
+    times = [process.cpu_times() for process in processes(box).values()]
+    return sum(t.user + t.system for t in times)
+
+
+def summary(heard: Heard, memory: Memory, elapsed_s: float, cpu_s: float) -> dict[str, float]:
+    """Figures under their fixed names."""
+    poses = [motion for motion in heard.motions if motion[2] >= MIN_JOINTS_SEEN]
+    latency = np.array([(receipt - newest) * 1e-6 for receipt, newest, _ in poses])
+    fresh = {name: len(frames) / elapsed_s for name, frames in heard.frames.items()}
+    figures = {
+        "live_fps": len(poses) / elapsed_s,
+        "motions_per_s": len(heard.motions) / elapsed_s,
+        "fresh_hz.min": min(fresh.values(), default=float("nan")),
+        **{f"fresh_hz.{name}": rate for name, rate in sorted(fresh.items())},
+        "cpu_cores": cpu_s / elapsed_s,
+        **{f"edge_ms.{stage}": statistics.mean(values) for stage, values in sorted(heard.stage_ms.items())},
+        "edge_ms.total": statistics.mean(heard.edge_total_ms) if heard.edge_total_ms else float("nan"),
+        "backlog_ms.max": max(heard.backlog_ms, default=float("nan")),
+        **{f"rss_mb.{name}": rss for name, rss in sorted(memory.samples[-1][1].items())},
+        "rss_growth_pct": memory.growth_pct(),
+    }
+    if len(latency):
+        figures |= {f"latency_ms.p{q}": float(np.percentile(latency, q)) for q in (50, 95, 99)}
+    return figures
+
+
+def main() -> None:
+    """Measure, print, write."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--site", type=Path, required=True)
+    parser.add_argument("--data", type=Path, required=True)
+    parser.add_argument("--seconds", type=float, default=300.0)
+    parser.add_argument("--half-seconds", type=float, default=60.0)
+    arguments = parser.parse_args()
+    report = Report("bench-box")
+    report.add(measure(arguments.site, arguments.data, arguments.seconds, WARM_S, None))
+    if arguments.half_seconds > 0:
+        one_core = {min(os.sched_getaffinity(0))}
+        report.add(measure(arguments.site, arguments.data, arguments.half_seconds, WARM_S, one_core), prefix="half_quota.")
+    report.show(BARS)
+    print(f"written to {report.write(arguments.data)}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,184 @@
+"""The built-in footage through the box's own steps, without clock and sockets, so that a run repeats to the last bit.
+
+The edge's `observe` and fusion's `step` are the functions that the processes call; the loop between them (predicted crops, search,
+turns) is closed as the processes close it.
+"""
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from edge.cameras.video import Video, load_video
+from edge.observe import EdgeConfig, EdgeState, Networks, Stages, observe
+from edge.perception.detection import load_person_detector
+from edge.perception.networks import Provider
+from edge.perception.pose import load_pose_network
+from edge.turns import is_due
+from models.arrays import Bool, Float
+from models.camera.rig import Rig
+from models.messages.control import CropPrediction, PoseNetwork, ViewControl
+from models.messages.motion import JointState, Motion
+from models.messages.observation import Observation, Person
+from models.skeleton import coco
+from services.fusion.config import PRESETS
+from services.fusion.governor import turn_offset_ns
+from services.fusion.pipeline import FusionOutput, Tick, initial_state, predict_views, step
+from services.fusion.triangulation import triangulate
+from services.fusion.views import Views, sightings
+
+START_NS = 1_000_000_000
+RATE_HZ = 30.0
+FLUSH_FRAMES = 10
+CONFIG = PRESETS["default"]
+Event = Observation | Tick
+
+
+@dataclass(frozen=True)
+class Reconstruction:
+    """Motions by frame of the footage; NaN where there was none.
+
+    Attributes:
+        live_m, smooth_m: (frames, 17, 3).
+        live_states, smooth_states: (frames, 17) `JointState`.
+        views: (frames, 17) inlier views of the smooth motion, a bit a camera.
+        cpu_s: CPU seconds of fusion's steps, all events.
+    """
+
+    live_m: Float
+    smooth_m: Float
+    live_states: Bool
+    smooth_states: Bool
+    views: Float
+    cpu_s: float
+
+
+def load_videos(rig: Rig, data: Path) -> list[Video]:
+    """The prepared footage."""
+    return [load_video(data / "footage" / f"{name}.avi", name) for name in rig.names]
+
+
+def look(
+    rig: Rig, videos: Sequence[Video], data: Path, rate_hz: float, network: PoseNetwork = "thunder", provider: Provider = "cpu"
+) -> list[Event]:
+    """Run the networks over the footage, each camera in its turn at `rate_hz`, fusion pointing them to the pupil.
+
+    Returns:
+        What fusion consumed, in its order.
+    """
+    pose = load_pose_network(network, data, provider)
+    detector = load_person_detector(data, provider)
+    networks = Networks(pose, lambda: detector)
+    states = [EdgeState() for _ in videos]
+    inferred: list[int | None] = [None] * len(videos)
+    fusion = initial_state(rig, CONFIG)
+    searching: dict[str, bool] = {}
+    predictions: dict[str, CropPrediction | None] = dict.fromkeys(rig.names)
+    events: list[Event] = []
+    for frames in zip(*(video.frames(RATE_HZ) for video in videos), strict=True):
+        t_ns = START_NS + frames[0].t_mid_ns
+        for index, (video, picture) in enumerate(zip(videos, frames, strict=True)):
+            frame = video.frame(0, picture.index, t_ns)
+            control = ViewControl(
+                camera=frame.camera,
+                sequence=frame.index,
+                t_ns=t_ns,
+                rate_hz=rate_hz,
+                offset_ns=START_NS + turn_offset_ns(index, len(videos), rate_hz),
+                network=network,
+                search=searching.get(frame.camera, True),
+                prediction=predictions[frame.camera],
+            )
+            if not is_due(t_ns, inferred[index], control):
+                continue
+            inferred[index] = t_ns
+            stages = Stages(time.thread_time_ns)
+            states[index], observation = observe(states[index], frame, networks, control, EdgeConfig(), stages)
+            events.append(observation)
+            fusion, _ = step(fusion, observation, CONFIG)
+        events.append(Tick(t_ns))
+        fusion, output = step(fusion, Tick(t_ns), CONFIG)
+        searching = output.searching or searching
+        predictions = predict_views(fusion, t_ns)
+    last_ns = t_ns
+    events += [Tick(last_ns + round(k * 1e9 / RATE_HZ)) for k in range(1, FLUSH_FRAMES + 1)]
+    return events
+
+
+def reconstruct(rig: Rig, events: Sequence[Event], frames: int) -> Reconstruction:
+    """Fuse recorded events."""
+    state = initial_state(rig, CONFIG)
+    joints = {kind: np.full((frames, coco.COUNT, 3), np.nan) for kind in ("live", "smooth")}
+    states = {kind: np.zeros((frames, coco.COUNT), np.uint8) for kind in ("live", "smooth")}
+    views = np.zeros((frames, coco.COUNT), np.uint32)
+    outputs: list[FusionOutput] = []
+    began = time.thread_time()
+    for event in events:
+        state, output = step(state, event, CONFIG)
+        outputs.append(output)
+    cpu_s = time.thread_time() - began
+    motions: list[Motion] = [motion for output in outputs for motion in output.motions]
+    for motion in motions:
+        frame = round((motion.t_ns - START_NS) * 1e-9 * RATE_HZ)
+        if not 0 <= frame < frames:
+            continue
+        known = motion.states != JointState.UNKNOWN
+        joints[motion.kind][frame, known] = motion.joints_m[known]
+        states[motion.kind][frame] = motion.states
+        if motion.kind == "smooth":
+            views[frame] = motion.views
+    return Reconstruction(joints["live"], joints["smooth"], states["live"], states["smooth"], views, cpu_s)
+
+
+def pupil_keypoints(rig: Rig, events: Sequence[Event], near_m: Float) -> tuple[Float, Float]:
+    """The keypoints of the person that each camera saw nearest to a reconstruction.
+
+    Args:
+        rig: calibration.
+        events: recorded.
+        near_m: (frames, 17, 3) reconstruction that tells the pupil from others.
+
+    Returns:
+        (frames, cameras, 17, 2) pixels as observed and (frames, cameras, 17) scores; NaN where the camera did not look.
+    """
+    points = np.full((len(near_m), len(rig), coco.COUNT, 2), np.nan)
+    scores = np.full((len(near_m), len(rig), coco.COUNT), np.nan)
+    for event in events:
+        if isinstance(event, Tick) or not event.persons or event.frame >= len(near_m):
+            continue
+        index = rig.index(event.camera)
+        projected = rig.cameras[index].project(near_m[event.frame])
+        person = min(event.persons, key=lambda person: _distance_px(person, projected))
+        points[event.frame, index] = person.keypoints_px
+        scores[event.frame, index] = person.score
+    return points, scores
+
+
+def frame_by_frame(rig: Rig, events: Sequence[Event], frames: int) -> Float:
+    """(frames, 17, 3) robust triangulation of each frame alone, without any smoothing; NaN where two views don't agree.
+
+    For runs in which every camera looks at every frame.
+    """
+    views = Views.of(rig)
+    joints = np.full((frames, coco.COUNT, 3), np.nan)
+    for number in range(frames):
+        seen = [event for event in events if isinstance(event, Observation) and event.frame == number and event.persons]
+        first = [sightings(observation, views, CONFIG.sighting)[0] for observation in seen]
+        points = np.zeros((len(rig), coco.COUNT, 2))
+        sigma = np.ones((len(rig), coco.COUNT))
+        usable = np.zeros((len(rig), coco.COUNT), bool)
+        for sighting in first:
+            points[sighting.camera], sigma[sighting.camera] = sighting.points_px, sighting.sigma_px
+            usable[sighting.camera] = sighting.usable
+        found = triangulate(views, points, sigma, usable, CONFIG.triangulation)
+        agreed = found.count >= 2
+        joints[number, agreed] = found.points_m[agreed]
+    return joints
+
+
+def _distance_px(person: Person, projected: Float) -> float:
+    distance = np.linalg.norm(person.keypoints_px - projected, axis=-1)
+    finite = distance[np.isfinite(distance)]
+    return float(np.median(finite)) if len(finite) else float(-person.score.mean())
