@@ -2,6 +2,7 @@
 
 import os
 import signal
+import socket
 import threading
 import time
 from dataclasses import dataclass
@@ -15,8 +16,6 @@ from services.support.site_files import read_site
 
 ROUTER = "fusion"
 """The process that is the bus's router."""
-
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 @dataclass(frozen=True)
@@ -81,18 +80,26 @@ def run_process(order: ProcessOrder) -> None:
 def stop_on_signals() -> threading.Event:
     """An event that the first SIGTERM or SIGINT sets; the second one ends the process.
 
-    A thread waits for the signals. A handler would run on the main thread, in between two of its instructions: setting an
-    event from there can wait for ever for the lock that the interrupted instruction holds, and it has to wait for long
-    calls into compiled code.
+    Python's own handlers run on the main thread between two of its instructions: they wait for long calls into compiled
+    code, and setting an event there can wait for ever for a lock that the interrupted instruction holds. So the
+    signal's number goes through a socket to a thread, which Python does without the main thread.
     """
     stop = threading.Event()
-    signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
+    receiver, sender = socket.socketpair()
+    sender.setblocking(False)
+    signal.set_wakeup_fd(sender.fileno(), warn_on_full_buffer=False)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, _leave_to_thread)
 
     def wait() -> None:
-        signal.sigwait(_SIGNALS)
-        stop.set()
-        received = signal.sigwait(_SIGNALS)
-        os._exit(128 + received)
+        with sender:  # Kept open for as long as the process lives.
+            receiver.recv(1)
+            stop.set()
+            os._exit(128 + receiver.recv(1)[0])
 
     threading.Thread(target=wait, name="signals", daemon=True).start()
     return stop
+
+
+def _leave_to_thread(_number: int, _frame: object) -> None:
+    pass
