@@ -72,7 +72,7 @@ kernels: $(DATA)/kernels/.ready ## Compile the numerical kernels, so that no liv
 $(DATA)/kernels/.ready: $(wildcard services/fusion/*.py) | $(VENV)/.ready
 	@mkdir -p $(@D)
 	@echo "Compiling numerical kernels ..."
-	@$(PYTHON) -m services.fusion.build.compile
+	@$(PYTHON) -c "from services.fusion.warm_up import warm_up; warm_up()"
 	@touch $@
 
 bench-box: setup ## Live rate, latency, CPU and memory of the whole box, 300 s and at half the CPU
