@@ -13,7 +13,7 @@ from models.skeleton import coco
 REDUCTIONS: Final = (4, 2, 1)
 BOX_MARGIN: Final = 1.25
 """Side of the crop over the longer side of a detected box."""
-POSE_MARGIN: Final = 1.35
+POSE_MARGIN: Final = 1.25
 """Side of the crop over the longer side of the keypoints' extent; their extent ends at the eyes, ankles and wrists."""
 _SHORT_TRUNK: Final = 0.08
 """Trunk length over crop side under which its direction says nothing: the person bends towards the camera or away."""

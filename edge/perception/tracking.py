@@ -42,7 +42,7 @@ class TrackingConfig:
     looks_max: int = 2
     jump: float = 0.35
     same: float = 0.08
-    settle: float = 0.7
+    settle: float = 0.5
 
 
 @dataclass(frozen=True)
