@@ -113,9 +113,9 @@ class FilterConfig:
         history: observations that can be gone back over when one arrives late.
     """
 
-    acceleration_m_s2: Float = field(default_factory=lambda: by_distance_from_trunk(8.0, 15.0, 30.0))
-    acceleration_memory_s: float = 0.15
-    velocity_memory_s: float = 0.6
+    acceleration_m_s2: Float = field(default_factory=lambda: by_distance_from_trunk(4.0, 10.0, 40.0))
+    acceleration_memory_s: float = 0.06
+    velocity_memory_s: float = 0.5
     max_speed_m_s: float = 20.0
     soft_gate: float = 6.0
     hard_gate: float = 16.0
@@ -134,6 +134,8 @@ class SmoothingConfig:
     Attributes:
         order: order of the difference that is penalised: 3 measured best, the paper's is 2.
         difference_m: (17,) one sigma of that difference at 30 Hz; the square root of the inverse of eq. 8's gamma.
+        difference_freedom: freedom of Student's t that the differences are taken to follow; infinite is a Gaussian.
+        bend_m: (17,) one sigma of the second difference: no joint accelerates without bound.
         knots: length of the window in grid instants.
         iterations: reweighting steps a tick; a position is stepped on in every tick that it is in the window.
         robust_sigmas: as in triangulation.
@@ -142,9 +144,11 @@ class SmoothingConfig:
     """
 
     order: Literal[2, 3] = 3
-    difference_m: Float = field(default_factory=lambda: by_distance_from_trunk(0.006, 0.011, 0.019))
+    difference_m: Float = field(default_factory=lambda: by_distance_from_trunk(0.003, 0.005, 0.008))
+    difference_freedom: float = 2.0
+    bend_m: Float = field(default_factory=lambda: by_distance_from_trunk(0.03, 0.06, 0.15))
     knots: int = 24
-    iterations: int = 1
+    iterations: int = 2
     robust_sigmas: float = 3.0
     limb_sigma: float = 0.02
     limb_samples: int = 90

@@ -128,44 +128,38 @@ def _tick(state: FusionState, t_ns: int, config: FusionConfig) -> FusionOutput:
     t_s = t_ns * 1e-9
     for reconstruction in state.epochs:
         reconstruction.tick(config)
-    live_s = t_s - config.live_lag_frames * config.frame_s
-    motions = [_live(state, live_s, config), *_smooth(state, t_s, live_s - config.smooth_lag_frames * config.frame_s, config)]
+    motions = _motions(state, t_s, config)
     current = state.epochs[-1]
     searching = {name: current.searching(index, config) for name, index in state.views.index.items()}
-    return FusionOutput(tuple(motions), current.pupil is not None, searching)
+    return FusionOutput(motions, current.pupil is not None, searching)
 
 
-def _live(state: FusionState, t_s: float, config: FusionConfig) -> Motion:
-    reconstruction = _epoch_at(state, t_s)
-    pose = _NOBODY if reconstruction.pupil is None else reconstruction.pupil.live(t_s, config)
-    return _motion(state, "live", reconstruction, t_s, pose)
-
-
-def _smooth(state: FusionState, now_s: float, until_s: float, config: FusionConfig) -> list[Motion]:
-    """All grid instants up to `until_s` that were not given out yet, each by the epoch that it belongs to."""
+def _motions(state: FusionState, now_s: float, config: FusionConfig) -> tuple[Motion, ...]:
+    """The live instant and all grid instants that became due, each by the epoch that it belongs to."""
+    live_s = now_s - config.live_lag_frames * config.frame_s
+    until_s = live_s - config.smooth_lag_frames * config.frame_s
     until = int(np.floor(until_s / config.frame_s + 1e-6))
     first = int(np.ceil(state.epochs[0].first_s / config.frame_s))
     begin = max(first if state.grid is None else state.grid, until - _MAX_GRID + 1)
     motions = []
     for index, reconstruction in enumerate(state.epochs):
-        end = until + 1
-        if index + 1 < len(state.epochs):
-            end = min(end, int(np.ceil(state.seams_s[index + 1] / config.frame_s)))
-        due = range(begin, max(begin, end))
-        begin = due.stop
-        poses = [_NOBODY] * len(due) if reconstruction.pupil is None else reconstruction.pupil.smooth(now_s, due, config)
-        motions += [_motion(state, "smooth", reconstruction, k * config.frame_s, pose) for k, pose in zip(due, poses, strict=True)]
+        begins_s = state.seams_s[index] if index else -np.inf
+        ends_s = state.seams_s[index + 1] if index + 1 < len(state.epochs) else np.inf
+        end = min(until + 1, int(np.ceil(min(ends_s, now_s) / config.frame_s)))
+        grid = range(begin, max(begin, end))
+        begin = grid.stop
+        live, smooth = _NOBODY, [_NOBODY] * len(grid)
+        if reconstruction.pupil is not None:
+            live, smooth = reconstruction.pupil.poses(min(now_s, ends_s), live_s, grid, config)
+        if begins_s <= live_s < ends_s:
+            motions.append(_motion(state, "live", reconstruction, live_s, live))
+        motions += [
+            _motion(state, "smooth", reconstruction, k * config.frame_s, pose) for k, pose in zip(grid, smooth, strict=True)
+        ]
     state.grid = begin
     while len(state.epochs) > 1 and until_s >= state.seams_s[1]:
         del state.epochs[0], state.seams_s[0]
-    return motions
-
-
-def _epoch_at(state: FusionState, t_s: float) -> Reconstruction:
-    for reconstruction, seam_s in zip(reversed(state.epochs), reversed(state.seams_s), strict=True):
-        if t_s >= seam_s:
-            return reconstruction
-    return state.epochs[0]
+    return tuple(motions)
 
 
 def _motion(state: FusionState, kind: str, reconstruction: Reconstruction, t_s: float, pose: Pose) -> Motion:

@@ -30,7 +30,7 @@ _STALE_S = 0.2
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """The joints at one instant: arrays as in `Motion`, in float64."""
+    """The joints at one instant: arrays as in `Motion`, in float64; what is unknown carries no numbers."""
 
     joints_m: Float
     covariance_m2: Float
@@ -58,7 +58,8 @@ class Pupil:
         self._limbs = LimbLengths(config.smoothing)
         self._agreed_s: Float = np.full((len(views), coco.COUNT), -np.inf)
         self._disagreements: Counts = np.zeros(coco.COUNT, np.int64)
-        self._two_views: Counts = np.full(coco.COUNT, -(2**40), np.int64)
+        self._smooth_agreed_s: Float = np.full(coco.COUNT, -np.inf)
+        self._live_agreed_s: Float = np.full(coco.COUNT, -np.inf)
         last = int(np.ceil(t_s / config.frame_s)) + 1
         self._smoother = Smoother(last - config.smoothing.knots + 1, config.frame_s, config.smoothing)
         self._seed(t_s, joints, np.flatnonzero(joints.count >= 2))
@@ -124,41 +125,60 @@ class Pupil:
             self._seed(instant, found, np.flatnonzero(anew))
             self._disagreements[anew] = 0
 
-    def live(self, t_s: float, config: FusionConfig) -> Pose:
-        """The pose at an instant near the newest observation, from the filters."""
-        filters = self._filters.at(t_s)
-        supported = self._agreed_s >= t_s - config.filter.view_memory_s
-        covariance = filters.covariance[:, :3, :3]
-        certain = np.trace(covariance, axis1=1, axis2=2) <= config.filter.max_sigma_m**2
-        known = filters.alive & certain & (t_s >= self.since_s)
-        states = np.where(known, np.where(supported.sum(axis=0) >= 2, JointState.SEEN, JointState.GUESSED), JointState.UNKNOWN)
-        return _pose(filters.state[:, :3], covariance, states, _bits(supported))
-
     def skeleton(self, t_s: float) -> tuple[Float, Bool]:
         """Joints (17, 3) expected at an instant, and which are known (17,), for a rough use such as a crop."""
         filters = self._filters.at(t_s)
         return filters.state[:, :3], filters.alive
 
-    def smooth(self, t_s: float, indices: range, config: FusionConfig) -> list[Pose]:
-        """Move the window's end to `t_s`, improve it, and read out grid instants."""
-        for _ in range(min(int(np.floor(t_s / config.frame_s)) + 1 - self._smoother.last, config.smoothing.knots)):
+    def poses(self, now_s: float, live_s: float, grid: range, config: FusionConfig) -> tuple[Pose, list[Pose]]:
+        """The pose at a live instant, and those at grid instants, from everything seen until `now_s`.
+
+        The window's end is newer than the newest picture; what it says there is its own extrapolation.
+        """
+        self._reach(now_s, config)
+        smooth_s = np.array(grid) * config.frame_s
+        memory_s = config.filter.view_memory_s
+        memories = np.append(np.full(len(grid), 0.5 * memory_s), memory_s)
+        smoothed = self._smoother.step(self._tracks, self._views, self._limbs, np.append(smooth_s, live_s), memories)
+        *smooth, live = (
+            self._pose(t, points, covariance, views, last, config)
+            for t, points, covariance, views, last in zip(
+                (*smooth_s, live_s),
+                smoothed.points_m,
+                smoothed.covariance_m2,
+                smoothed.views,
+                (*[self._smooth_agreed_s] * len(grid), self._live_agreed_s),
+                strict=True,
+            )
+        )
+        return live, smooth
+
+    def _reach(self, now_s: float, config: FusionConfig) -> None:
+        """Move the window on until its end is beyond `now_s`, and let the filters foresee what no picture holds yet."""
+        end = int(np.floor(now_s / config.frame_s)) + 1
+        for _ in range(min(end - self._smoother.last, config.smoothing.knots)):
             self._smoother.extend()
         held = int(np.floor(self._filters.newest.t_s / config.frame_s))
         for index in range(max(held, self._smoother.first), self._smoother.last + 1):
             ahead = self._filters.at(index * config.frame_s)
             self._smoother.foresee(index, ahead.state[:, :3], ahead.alive)
-        memory = config.filter.view_memory_s / 2
-        return [self._read(index, memory, config) for index in indices or range(indices.start - 1, indices.start)][: len(indices)]
 
-    def _read(self, index: int, memory_s: float, config: FusionConfig) -> Pose:
-        smoothed = self._smoother.step(self._tracks, self._views, self._limbs, index, memory_s)
-        agreeing = np.bitwise_count(smoothed.views)
-        self._two_views[agreeing >= 2] = index
-        recent = (index - self._two_views) * config.frame_s <= config.filter.guess_s + 1e-9
-        certain = np.trace(smoothed.covariance_m2, axis1=1, axis2=2) <= config.filter.max_sigma_m**2
-        known = recent & certain & (index * config.frame_s >= self.since_s - config.frame_s)
+    def _pose(
+        self, t_s: float, points_m: Float, covariance_m2: Float, views: UInt32, agreed_s: Float, config: FusionConfig
+    ) -> Pose:
+        """States from how many views agree now, and from when two last did (`agreed_s`, kept up to date here)."""
+        agreeing = np.bitwise_count(views)
+        agreed_s[agreeing >= 2] = t_s
+        recent = t_s - agreed_s <= config.filter.guess_s + 1e-9
+        certain = np.trace(covariance_m2, axis1=1, axis2=2) <= config.filter.max_sigma_m**2
+        known = recent & certain & (t_s >= self.since_s - config.frame_s)
         states = np.where(known, np.where(agreeing >= 2, JointState.SEEN, JointState.GUESSED), JointState.UNKNOWN)
-        return _pose(smoothed.points_m, smoothed.covariance_m2, states, smoothed.views)
+        return Pose(
+            np.where(known[:, None], points_m, 0.0),
+            np.where(known[:, None, None], covariance_m2, 0.0),
+            states.astype(np.uint8),
+            np.where(known, views, 0).astype(np.uint32),
+        )
 
     def _seed(self, t_s: float, joints: Triangulated, which: Counts) -> None:
         doubt = np.eye(3) * _SEED_SIGMA_M**2
@@ -179,20 +199,3 @@ class Pupil:
     def _second_newest(self, joint: int) -> float:
         """When the second of two views last agreed with a joint."""
         return float(np.sort(self._agreed_s[:, joint])[-2])
-
-
-def _bits(flags: Bool) -> UInt32:
-    """(C, 17) flags to (17,) with bit c for row c."""
-    bits: UInt32 = (flags.astype(np.uint32) << np.arange(len(flags), dtype=np.uint32)[:, None]).sum(axis=0, dtype=np.uint32)
-    return bits
-
-
-def _pose(joints_m: Float, covariance_m2: Float, states: UInt8, views: UInt32) -> Pose:
-    """What is unknown carries no numbers."""
-    known = states != JointState.UNKNOWN
-    return Pose(
-        np.where(known[:, None], joints_m, 0.0),
-        np.where(known[:, None, None], covariance_m2, 0.0),
-        states.astype(np.uint8),
-        np.where(known, views, 0).astype(np.uint32),
-    )

@@ -26,12 +26,12 @@ from services.fusion.window import smooth_window
 
 @dataclass(frozen=True, eq=False)
 class Smoothed:
-    """Joints at one grid instant.
+    """Joints at n instants.
 
     Attributes:
-        points_m: (17, 3).
-        covariance_m2: (17, 3, 3).
-        views: (17,) bit i set if camera i agrees, near that instant.
+        points_m: (n, 17, 3).
+        covariance_m2: (n, 17, 3, 3).
+        views: (n, 17) bit i set if camera i agrees, near that instant.
     """
 
     points_m: Float
@@ -45,7 +45,7 @@ class Smoother:
     Attributes:
         first: grid index of the oldest position; position k is at (first + k) * frame_s.
         positions_m: (17, knots, 3).
-        covariance_m2: (17, 3, 3) of the position read out last; the neighbours' limb terms are weighed by it.
+        covariance_m2: (17, 3, 3) of the first position read out last time; the neighbours' limb terms are weighed by it.
         known: (17, knots) whether a position holds anything.
     """
 
@@ -80,11 +80,17 @@ class Smoother:
         self.positions_m[joint, anew] = point_m
         self.known[joint] = True
 
-    def step(self, tracks: Tracks, views: Views, limbs: LimbLengths, index: int, memory_s: float) -> Smoothed:
-        """Improve all positions; read out grid instant `index`, naming views that agree within `memory_s` of it."""
+    def exchange(self, mask: Bool, since_s: float) -> None:
+        """Exchange left and right of the flagged joints (17,) from an instant on."""
+        order = np.where(mask, coco.MIRROR, np.arange(coco.COUNT))
+        from_knot = max(int(np.ceil(since_s / self._frame_s)) - self.first, 0)
+        self.positions_m[:, from_knot:] = self.positions_m[order, from_knot:]
+
+    def step(self, tracks: Tracks, views: Views, limbs: LimbLengths, instants_s: Float, memories_s: Float) -> Smoothed:
+        """Improve all positions, and read out n instants (n,), naming views that agree within `memories_s` (n,) of each."""
         config = self._config
         lengths, sigmas = limbs.current()
-        covariance, seen = smooth_window(
+        points, covariance, seen = smooth_window(
             self.positions_m,
             self.known,
             self.first * self._frame_s,
@@ -97,14 +103,16 @@ class Smoother:
             tracks.usable,
             config.order,
             1.0 / config.difference_m**2,
+            config.difference_freedom,
+            1.0 / config.bend_m**2,
             config.robust_sigmas**2,
             config.iterations,
             ENDS,
             lengths,
             sigmas,
             self.covariance_m2,
-            index - self.first,
-            memory_s,
+            instants_s,
+            memories_s,
         )
-        self.covariance_m2 = covariance
-        return Smoothed(self.positions_m[:, index - self.first].copy(), covariance, seen)
+        self.covariance_m2 = covariance[0]
+        return Smoothed(points, covariance, seen)

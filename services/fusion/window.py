@@ -11,6 +11,8 @@ from services.fusion.compiled import Counts, compiled
 
 _BAND = 12
 """Sub-diagonals and the diagonal."""
+_LEAST_SHARE = 0.02
+"""No difference, however large, loses more of its penalty."""
 
 
 @compiled
@@ -87,17 +89,30 @@ def _add_pictures(
 
 
 @compiled
-def _add_differences(band: Float, knots: int, order: int, strength: float) -> None:
+def _add_differences(band: Float, x: Float, order: int, strength: float, freedom: float) -> None:
+    """Penalty on differences, heavy-tailed: Student's t of this freedom, so that a throw is not ironed out (reweighted)."""
+    knots = x.shape[0]
     stencil = np.array([-1.0, 3.0, -3.0, 1.0]) if order == 3 else np.array([1.0, -2.0, 1.0, 0.0])
     for first in range(knots - order):
+        size2 = 0.0
+        for k in range(3):
+            difference = 0.0
+            for a in range(order + 1):
+                difference += stencil[a] * x[first + a, k]
+            size2 += difference * difference
+        weight = strength
+        if freedom < np.inf:
+            weight *= max((freedom + 3.0) / (freedom + strength * size2), _LEAST_SHARE)
         for a in range(order + 1):
             for b in range(a + 1):
                 for k in range(3):
-                    band[3 * (first + a) + k, 3 * (a - b)] += strength * stencil[a] * stencil[b]
+                    band[3 * (first + a) + k, 3 * (a - b)] += weight * stencil[a] * stencil[b]
 
 
 @compiled
-def _add_limb(band: Float, right: Float, x: Float, other: Float, known: Bool, length: float, sigma: float, spread: Float) -> None:
+def _add_limb(
+    band: Float, right: Float, x: Float, other: Float, known: Bool, length: float, sigma: float, spread: Float, scale2: float
+) -> None:
     """Pull every position onto the limb's length from its other end, along the limb only."""
     direction, block = np.empty(3), np.empty((3, 3))
     for knot in range(x.shape[0]):
@@ -116,6 +131,8 @@ def _add_limb(band: Float, right: Float, x: Float, other: Float, known: Bool, le
         for k in range(3):
             for m in range(3):
                 variance += direction[k] * spread[k, m] * direction[m]
+        # An end that went astray must not drag the other along: the term gives way (Geman-McClure) to a large difference.
+        variance *= (1.0 + (distance - length) ** 2 / (scale2 * variance)) ** 2
         along = length
         for k in range(3):
             along += direction[k] * other[knot, k]
@@ -170,15 +187,13 @@ def _agreeing(
     memory: float,
 ) -> int:
     """Bits of the cameras with a picture near the instant whose residual is within chi-square's 99 %."""
-    weights, bits = np.empty(4), 0
+    point, bits = np.empty(3), 0
     for camera in range(projections.shape[0]):
         for i in range(counts[camera]):
             place = (times[camera, i] - start) / frame
             if not usable[camera, i, joint] or abs(times[camera, i] - instant) > memory or place < 0.0 or place > x.shape[0] - 1:
                 continue
-            base = min(max(int(place) - 1, 0), x.shape[0] - 4)
-            _cubic(place - base, weights)
-            point = weights[0] * x[base] + weights[1] * x[base + 1] + weights[2] * x[base + 2] + weights[3] * x[base + 3]
+            _read(x, place, point)
             p = projections[camera]
             w = p[2, 0] * point[0] + p[2, 1] * point[1] + p[2, 2] * point[2] + p[2, 3]
             if w > 1e-6:
@@ -188,6 +203,16 @@ def _agreeing(
                     bits |= 1 << camera
                     break
     return bits
+
+
+@compiled
+def _read(x: Float, place: float, out: Float) -> None:
+    """Position at a place of the window, in knots."""
+    weights = np.empty(4)
+    base = min(max(int(place) - 1, 0), x.shape[0] - 4)
+    _cubic(place - base, weights)
+    for k in range(3):
+        out[k] = weights[0] * x[base, k] + weights[1] * x[base + 1, k] + weights[2] * x[base + 2, k] + weights[3] * x[base + 3, k]
 
 
 @compiled
@@ -204,18 +229,21 @@ def smooth_window(
     usable: Bool,
     order: int,
     strength: Float,
+    freedom: float,
+    bend: Float,
     scale2: float,
     iterations: int,
     ends: Counts,
     lengths: Float,
     length_sigmas: Float,
     spread: Float,
-    index: int,
-    memory: float,
-) -> tuple[Float, UInt32]:
-    """The kernel of `Smoother.step`: positions are improved in place; covariance and agreeing views at `index` come back."""
-    joints, knots = positions.shape[0], positions.shape[1]
-    covariance, views = np.zeros((joints, 3, 3)), np.zeros(joints, np.uint32)
+    instants: Float,
+    memories: Float,
+) -> tuple[Float, Float, UInt32]:
+    """The kernel of `Smoother.step`: improves positions in place; positions, covariances and agreeing views at instants come back."""
+    joints, knots, reads = positions.shape[0], positions.shape[1], instants.shape[0]
+    points, covariance = np.zeros((reads, joints, 3)), np.zeros((reads, joints, 3, 3))
+    views = np.zeros((reads, joints), np.uint32)
     band, right = np.empty((3 * knots, _BAND)), np.empty(3 * knots)
     for j in range(joints):
         if not known[j].any():
@@ -225,26 +253,16 @@ def smooth_window(
             band[:] = 0.0
             right[:] = 0.0
             for camera in range(projections.shape[0]):
-                _add_pictures(
-                    band,
-                    right,
-                    x,
-                    start,
-                    frame,
-                    projections[camera],
-                    times[camera],
-                    counts[camera],
-                    pixels[camera],
-                    sigma[camera],
-                    usable[camera],
-                    scale2,
-                    j,
-                )
-            _add_differences(band, knots, order, strength[j])
+                pictures = times[camera], counts[camera], pixels[camera], sigma[camera], usable[camera]
+                _add_pictures(band, right, x, start, frame, projections[camera], *pictures, scale2, j)
+            _add_differences(band, x, order, strength[j], freedom)
+            _add_differences(band, x, 2, bend[j], np.inf)
             for limb in range(ends.shape[0]):
                 if lengths[limb] > 0.0 and (ends[limb, 0] == j or ends[limb, 1] == j):
                     other = ends[limb, 1] if ends[limb, 0] == j else ends[limb, 0]
-                    _add_limb(band, right, x, positions[other], known[other], lengths[limb], length_sigmas[limb], spread[other])
+                    _add_limb(
+                        band, right, x, positions[other], known[other], lengths[limb], length_sigmas[limb], spread[other], scale2
+                    )
             # A metre of doubt about what was there before keeps what no picture and no neighbour holds in its place.
             for i in range(3 * knots):
                 band[i, 0] += 1.0
@@ -254,11 +272,18 @@ def smooth_window(
             for i in range(3 * knots):
                 x[i // 3, i % 3] = right[i]
         known[j] = True
-        for k in range(3):
-            right[:] = 0.0
-            right[3 * index + k] = 1.0
-            _solve(band, right)
-            for m in range(3):
-                covariance[j, m, k] = right[3 * index + m]
-        views[j] = _agreeing(x, start, frame, projections, times, counts, pixels, sigma, usable, j, start + index * frame, memory)
-    return covariance, views
+        for read in range(reads):
+            place = (instants[read] - start) / frame
+            _read(x, place, points[read, j])
+            # The later of the two positions around the instant is the less certain one.
+            knot = min(int(np.ceil(place - 1e-6)), knots - 1)
+            for k in range(3):
+                right[:] = 0.0
+                right[3 * knot + k] = 1.0
+                _solve(band, right)
+                for m in range(3):
+                    covariance[read, j, m, k] = right[3 * knot + m]
+            views[read, j] = _agreeing(
+                x, start, frame, projections, times, counts, pixels, sigma, usable, j, instants[read], memories[read]
+            )
+    return points, covariance, views
