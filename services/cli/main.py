@@ -37,9 +37,10 @@ def main() -> None:
 @app.command()
 def run(site: SiteFile, data: DataFolder = Path("build")) -> None:
     """Start the whole box, watch over it, and end it on Ctrl-C."""
+    from services.cli.parts import load_checks  # noqa: PLC0415
     from services.supervisor.supervise import supervise  # noqa: PLC0415
 
-    supervise(site, data)
+    supervise(site, data, load_checks())
 
 
 @app.command()

@@ -1,9 +1,5 @@
 """Run one process of the box: read the site, join the bus, and hand over until told to stop."""
 
-import os
-import signal
-import socket
-import threading
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +8,7 @@ from models.errors import UserError
 from models.process import Bus, ProcessContext
 from services.cli.parts import find_process, load_process
 from services.support.health import ResourceMeter
+from services.support.signals import stop_on_signals
 from services.support.site_files import read_site
 
 ROUTER = "fusion"
@@ -75,31 +72,3 @@ def run_process(order: ProcessOrder) -> None:
         main(context)
     finally:
         bus.close()
-
-
-def stop_on_signals() -> threading.Event:
-    """An event that the first SIGTERM or SIGINT sets; the second one ends the process.
-
-    Python's own handlers run on the main thread between two of its instructions: they wait for long calls into compiled
-    code, and setting an event there can wait for ever for a lock that the interrupted instruction holds. So the
-    signal's number goes through a socket to a thread, which Python does without the main thread.
-    """
-    stop = threading.Event()
-    receiver, sender = socket.socketpair()
-    sender.setblocking(False)
-    signal.set_wakeup_fd(sender.fileno(), warn_on_full_buffer=False)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, _leave_to_thread)
-
-    def wait() -> None:
-        with sender:  # Kept open for as long as the process lives.
-            receiver.recv(1)
-            stop.set()
-            os._exit(128 + receiver.recv(1)[0])
-
-    threading.Thread(target=wait, name="signals", daemon=True).start()
-    return stop
-
-
-def _leave_to_thread(_number: int, _frame: object) -> None:
-    pass

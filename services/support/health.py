@@ -8,7 +8,7 @@ from typing import Literal
 
 from models.messages import codec, topics
 from models.messages.health import CameraHealth, FusionHealth, Health
-from models.process import ProcessContext, Resources
+from models.process import Bus, Resources
 
 PERIOD_S = 1.0
 _PAGE_MB = os.sysconf("SC_PAGE_SIZE") / 2**20
@@ -35,12 +35,18 @@ class HealthReporter:
     """Publishes the health of one process. A loop asks `due` as often as it likes and calls `report` when it says so.
 
     Args:
-        context: of the process.
+        process: its name on the bus.
+        bus: where to say it.
+        resources: measures the process.
         clock_ns: CLOCK_MONOTONIC.
     """
 
-    def __init__(self, context: ProcessContext, clock_ns: Callable[[], int] = time.monotonic_ns) -> None:
-        self._context = context
+    def __init__(
+        self, process: str, bus: Bus, resources: Callable[[], Resources], clock_ns: Callable[[], int] = time.monotonic_ns
+    ) -> None:
+        self._process = process
+        self._bus = bus
+        self._resources = resources
         self._clock_ns = clock_ns
         self._next_ns = clock_ns()
 
@@ -59,9 +65,9 @@ class HealthReporter:
         """Publish how this process is, and return what was published."""
         now_ns = self._clock_ns()
         self._next_ns = now_ns + round(PERIOD_S * 1e9)
-        used = self._context.resources()
+        used = self._resources()
         health = Health(
-            process=self._context.name,
+            process=self._process,
             pid=os.getpid(),
             t_ns=now_ns,
             state=state,
@@ -71,5 +77,5 @@ class HealthReporter:
             camera=camera,
             fusion=fusion,
         )
-        self._context.bus.publish(topics.health(health.process), codec.encode(health))
+        self._bus.publish(topics.health(health.process), codec.encode(health))
         return health

@@ -1,0 +1,74 @@
+"""The supervisor on the bus. It joins beside its loop, since the router is a process that the loop has yet to start."""
+
+import threading
+from typing import Literal
+
+from models.messages import codec, topics
+from models.messages.health import Health
+from models.process import Bus, Subscription
+from services.support.health import HealthReporter, ResourceMeter
+
+NAME = "supervisor"
+_KEEP = 4
+
+
+class BusLink:
+    """Hears how the processes are and says how the supervisor is; until the bus is there it does neither.
+
+    Args:
+        endpoint: of the bus.
+    """
+
+    def __init__(self, endpoint: str) -> None:
+        self._endpoint = endpoint
+        self._stop = threading.Event()
+        self._bus: Bus | None = None
+        self._subscription: Subscription | None = None
+        self._reporter: HealthReporter | None = None
+        self._opener = threading.Thread(target=self._open, name="bus", daemon=True)
+        self._opener.start()
+
+    def heard(self) -> list[Health]:
+        """What has come in since the last call."""
+        messages: list[Health] = []
+        while self._subscription is not None and (delivery := self._subscription.receive(0.0)) is not None:
+            try:
+                messages.append(codec.decode(delivery.payload, Health))
+            except codec.CodecError:
+                continue  # Who speaks unintelligibly is silent, and treated as such.
+        return messages
+
+    def say(self, fault: str, trouble: str, failed: dict[str, str]) -> None:
+        """Once a second, publish how the box is held together.
+
+        Args:
+            fault: what is given up; makes the state "failed".
+            trouble: what is being mended; makes it "degraded".
+            failed: reasons by name of the processes that are given up, for which nobody else speaks now.
+        """
+        bus, reporter = self._bus, self._reporter
+        if bus is None or reporter is None or not reporter.due():
+            return
+        state: Literal["ok", "degraded", "failed"] = "failed" if fault else "degraded" if trouble else "ok"
+        own = reporter.report(state, fault or trouble)
+        for name, reason in failed.items():
+            message = Health(name, own.pid, own.t_ns, "failed", reason, cpu_cores=0.0, rss_mb=0.0)
+            bus.publish(topics.health(name), codec.encode(message))
+
+    def close(self) -> None:
+        """Leave the bus."""
+        self._stop.set()
+        self._opener.join()
+        if self._bus is not None:
+            self._bus.close()
+
+    def _open(self) -> None:
+        from services.bus.zenoh_bus import open_client  # noqa: PLC0415 - importing takes time in which processes can start
+
+        bus = open_client(self._endpoint, self._stop)
+        if bus is None:
+            return
+        self._subscription = bus.subscribe(topics.ALL_HEALTH, keep=_KEEP)
+        bus.declare_alive(topics.alive(NAME))
+        self._reporter = HealthReporter(NAME, bus, ResourceMeter())
+        self._bus = bus

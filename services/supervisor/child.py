@@ -1,0 +1,116 @@
+"""One process of the box as the supervisor holds it: started, read from, ended."""
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+USER_ERROR_PREFIX = "kinebox: "
+_READ_BYTES = 65536
+_READS_AT_ONCE = 16
+_LONGEST_LINE_BYTES = 65536
+
+
+@dataclass(frozen=True)
+class ChildSpec:
+    """What to start: a process by its entry point, for one camera or none."""
+
+    entry: str
+    camera: str | None = None
+
+    @property
+    def name(self) -> str:
+        """The process's name on the bus."""
+        return self.entry if self.camera is None else f"{self.entry}-{self.camera}"
+
+    def command(self, site: Path, data: Path, start_ns: int) -> list[str]:
+        """The command line of the process; it ends with the process that calls this."""
+        words = [sys.executable, "-P", "-m", "services.cli.main", "process", self.entry, "--site", str(site), "--data", str(data)]
+        words += ["--start-ns", str(start_ns), "--parent", str(os.getpid())]
+        return words if self.camera is None else [*words, "--camera", self.camera]
+
+
+class Child:
+    """A running process and its output, of which both streams come in one pipe.
+
+    It must be made on the main thread: the kernel ends it together with the thread that started it.
+    """
+
+    def __init__(self, command: list[str], environment: Mapping[str, str]) -> None:
+        # A process group of its own, so that Ctrl-C at a terminal reaches the supervisor alone and the end is orderly.
+        self._process = subprocess.Popen(  # noqa: S603 - our own interpreter and module
+            command,
+            env=dict(environment),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            process_group=0,
+        )
+        assert self._process.stdout is not None  # noqa: S101 - it was asked for above
+        self._output = self._process.stdout
+        os.set_blocking(self._output.fileno(), False)
+        self._partial = b""
+        self._exit_fd = os.pidfd_open(self.pid)
+        self.user_error = ""
+        """What the process told a person last, without its prefix."""
+
+    @property
+    def pid(self) -> int:
+        """Of the process."""
+        return self._process.pid
+
+    def fileno(self) -> int:
+        """A descriptor that becomes readable when the process ends."""
+        return self._exit_fd
+
+    def poll(self) -> int | None:
+        """The exit code, negative if a signal ended it; None while it runs."""
+        return self._process.poll()
+
+    def lines(self) -> list[str]:
+        """What the process has said since the last call, in whole lines; all of it once the process has ended."""
+        ended = self.poll() is not None
+        for _ in range(_READS_AT_ONCE):
+            chunk = self._read()
+            self._partial += chunk
+            if not chunk:
+                break
+        *whole, self._partial = self._partial.split(b"\n")
+        if ended or len(self._partial) > _LONGEST_LINE_BYTES:
+            whole.append(self._partial)
+            self._partial = b""
+        lines = [line.decode(errors="replace").rstrip() for line in whole if line.strip()]
+        for line in lines:
+            if line.startswith(USER_ERROR_PREFIX):
+                self.user_error = line.removeprefix(USER_ERROR_PREFIX)
+        return lines
+
+    def ask_to_end(self) -> None:
+        """Send SIGTERM."""
+        self._signal(signal.SIGTERM)
+
+    def kill(self) -> None:
+        """Send SIGKILL to the process and whatever it has started."""
+        self._signal(signal.SIGKILL)
+
+    def wait(self) -> int:
+        """Wait for the end of the process; its exit code."""
+        return self._process.wait()
+
+    def close(self) -> None:
+        """Let go of a process that has ended."""
+        self._output.close()
+        os.close(self._exit_fd)
+
+    def _read(self) -> bytes:
+        try:
+            return os.read(self._output.fileno(), _READ_BYTES)
+        except BlockingIOError:
+            return b""
+
+    def _signal(self, number: signal.Signals) -> None:
+        if self.poll() is None:
+            os.killpg(self.pid, number)

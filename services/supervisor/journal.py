@@ -1,0 +1,101 @@
+"""One stream of what all processes say: everything in `logs/kinebox.log` of the data folder, and on the console what matters.
+
+On a terminal a person gets warnings, errors and the supervisor's own calm lines; without a terminal (a service) everything goes to
+stderr as it is in the file, one JSON object a line.
+"""
+
+import datetime as dt
+import logging
+import logging.handlers
+import sys
+from pathlib import Path
+from typing import Any, TextIO
+
+import msgspec
+
+from services.supervisor.child import USER_ERROR_PREFIX
+
+_FILE_BYTES = 8 * 2**20
+_OLD_FILES = 3
+_LOUD = frozenset({"warning", "error", "critical"})
+_NOT_SHOWN = frozenset({"time", "level", "process", "event", "exception"})
+
+
+class _LogFile(logging.handlers.RotatingFileHandler):
+    def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802 - the name is the library's
+        """Say nothing: the library would print a traceback for every line."""
+
+
+class Journal:
+    """Writes lines. A console that is gone or a disc that is full must not stop the box.
+
+    Args:
+        folder: where the file is kept; it is made if it is missing.
+        console: where a person looks.
+    """
+
+    def __init__(self, folder: Path, console: TextIO | None = None) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self.path = folder / "kinebox.log"
+        self._file = _LogFile(self.path, maxBytes=_FILE_BYTES, backupCount=_OLD_FILES)
+        self._console = console or sys.stderr
+        self._person = self._console.isatty()
+
+    def child_said(self, process: str, line: str) -> None:
+        """Pass on a line of a process; one that is no JSON (a traceback, a library's print) is wrapped as an error."""
+        entry = _parse(line)
+        if entry is None:
+            entry = _entry(process, "error", line.removeprefix(USER_ERROR_PREFIX))
+            line = msgspec.json.encode(entry).decode()
+        self._write(line)
+        if not self._person:
+            self._show(line)
+        elif entry.get("level") in _LOUD:
+            self._show(_readable(entry))
+
+    def say(self, event: str, *, level: str = "info", **details: str) -> None:
+        """A line of the supervisor's own; a person always sees it."""
+        entry = _entry("supervisor", level, event) | details
+        line = msgspec.json.encode(entry).decode()
+        self._write(line)
+        self._show(event if self._person else line)
+
+    def welcome(self, block: str) -> None:
+        """Lines meant for a person only, on stdout."""
+        try:
+            sys.stdout.write(block + "\n")
+            sys.stdout.flush()
+        except OSError:
+            pass
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def _write(self, line: str) -> None:
+        self._file.handle(logging.LogRecord("kinebox", logging.INFO, "", 0, line, None, None))
+
+    def _show(self, line: str) -> None:
+        try:
+            self._console.write(line + "\n")
+            self._console.flush()
+        except OSError:
+            pass
+
+
+def _entry(process: str, level: str, event: str) -> dict[str, Any]:
+    now = dt.datetime.now(dt.UTC)
+    return {"process": process, "level": level, "event": event, "time": now.isoformat().replace("+00:00", "Z")}
+
+
+def _parse(line: str) -> dict[str, Any] | None:
+    try:
+        return msgspec.json.decode(line, type=dict[str, Any]) if line.startswith("{") else None
+    except msgspec.DecodeError:
+        return None
+
+
+def _readable(entry: dict[str, Any]) -> str:
+    details = " ".join(f"{key}={value}" for key, value in entry.items() if key not in _NOT_SHOWN)
+    lines = [f"{entry.get('process', '?')}: {entry.get('event', '')} {details}".rstrip()]
+    return "\n".join([*lines, *([str(entry["exception"])] if "exception" in entry else [])])

@@ -1,0 +1,213 @@
+"""`kinebox run`: start the box, keep it running, end it.
+
+One loop on the main thread, ten times a second: pass on what the processes say, bury and restart those that ended, kill those
+that hang, and say on the bus how things stand. The policy is in `policy` and `silence`; here is what touches the system.
+"""
+
+import os
+import select
+import time
+from collections.abc import Iterable
+from pathlib import Path
+from threading import Event
+
+from models.config.site import Site
+from services.supervisor import page
+from services.supervisor.bus_link import BusLink
+from services.supervisor.child import Child, ChildSpec
+from services.supervisor.journal import Journal
+from services.supervisor.policy import USER_ERROR
+from services.supervisor.post import Post, describe_exit
+from services.supervisor.preflight import Check, check_everything
+from services.supervisor.silence import LIMIT_S, Silence
+from services.support.signals import stop_on_signals
+
+ROUTER = "fusion"
+TICK_S = 0.1
+HELD_UP_S = 1.0
+"""If a tick took longer than this, the supervisor itself was held up and nobody else is to blame."""
+END_WITHIN_S = 2.0
+
+
+def supervise(site_file: Path, data: Path, checks: Iterable[Check]) -> None:
+    """Run the box until SIGINT or SIGTERM.
+
+    Args:
+        site_file: the site file.
+        data: folder with networks, footage and, from now on, logs.
+        checks: what the parts want checked before anything is started.
+
+    Raises:
+        UserError: something is wrong with the site or what it needs; nothing was started.
+    """
+    stop = stop_on_signals()
+    site = check_everything(site_file, data, checks)
+    journal = Journal(data / "logs")
+    try:
+        Supervisor(site_file, data, site, journal).run(stop)
+    finally:
+        journal.close()
+
+
+def posts_of(site: Site) -> list[Post]:
+    """What has to run for a site; the router first, since all others wait for it."""
+    cameras = [ChildSpec("edge", camera.name) for camera in site.cameras]
+    return [Post(spec) for spec in (ChildSpec(ROUTER), *cameras, ChildSpec("tablet"))]
+
+
+def child_environment(data: Path) -> dict[str, str]:
+    """The environment of every process: one thread each, and the compiled kernels where `make` has put them."""
+    fixed = {
+        "MKL_NUM_THREADS": "1",
+        "NUMBA_CACHE_DIR": str(data.resolve() / "kernels"),
+        "NUMBA_NUM_THREADS": "1",
+        "OMP_NUM_THREADS": "1",
+        "OPENBLAS_NUM_THREADS": "1",
+        "PYTHONUNBUFFERED": "1",
+    }
+    return dict(os.environ) | fixed
+
+
+class Supervisor:
+    """The running box."""
+
+    def __init__(self, site_file: Path, data: Path, site: Site, journal: Journal) -> None:
+        self._site_file = site_file
+        self._data = data
+        self._site = site
+        self._journal = journal
+        self._posts = posts_of(site)
+        self._environment = child_environment(data)
+        # Now, not later: a source begins with the picture that is due when it is ready, so waiting would gain nothing.
+        self._start_ns = time.monotonic_ns()
+        self._silence = Silence(ROUTER)
+        self._page_answers = False
+
+    def run(self, stop: Event) -> None:
+        """Man every post until `stop` is set, then end all."""
+        try:
+            self._journal.say(f"starting {', '.join(post.name for post in self._posts)}")
+            for post in self._posts:
+                self._start(post)
+            link = BusLink(self._site.bus.endpoint)
+            try:
+                self._watch(stop, link)
+            finally:
+                link.close()
+        finally:
+            self._end_all()
+
+    def _watch(self, stop: Event, link: BusLink) -> None:
+        before_s = time.monotonic()
+        while not stop.is_set():
+            self._wait(TICK_S)
+            now_s = time.monotonic()
+            held_up, before_s = now_s - before_s > HELD_UP_S, now_s
+            self._hear(link, now_s)
+            if held_up:
+                self._silence.restart_clocks(now_s)
+            for post in self._posts:
+                self._attend(post, now_s)
+            self._kill_hung(now_s)
+            self._speak(link)
+            self._welcome()
+
+    def _wait(self, timeout_s: float) -> None:
+        """Until a process ends, at most `timeout_s`."""
+        poller = select.poll()
+        for post in self._posts:
+            if post.child is not None:
+                poller.register(post.child, select.POLLIN)
+        poller.poll(timeout_s * 1e3)
+
+    def _start(self, post: Post) -> None:
+        command = post.spec.command(self._site_file, self._data, self._start_ns)
+        post.manned_by(Child(command, self._environment))
+        self._silence.forget(post.name)
+
+    def _attend(self, post: Post, now_s: float) -> None:
+        if post.child is not None:
+            self._pass_on(post, post.child)
+            if (code := post.child.poll()) is not None:
+                self._bury(post, post.child, code, now_s)
+        elif post.start_at_s is not None and now_s >= post.start_at_s:
+            self._start(post)
+
+    def _bury(self, post: Post, child: Child, code: int, now_s: float) -> None:
+        self._pass_on(post, child)
+        child.close()
+        self._silence.forget(post.name)
+        post.ended(code, child.user_error, now_s, self._site.supervisor)
+        if post.given_up:
+            self._journal.say(f"{post.name} is given up: {post.given_up}", level="error")
+        else:
+            self._journal.say(post.trouble, level="warning")
+
+    def _pass_on(self, post: Post, child: Child) -> None:
+        for line in child.lines():
+            self._journal.child_said(post.name, line)
+
+    def _hear(self, link: BusLink, now_s: float) -> None:
+        posts = {post.name: post for post in self._posts}
+        for health in link.heard():
+            post = posts.get(health.process)
+            # What an earlier process of that name said, or we on its behalf, is no sign of life.
+            if post is None or post.child is None or post.child.pid != health.pid:
+                continue
+            self._silence.hear(post.name, now_s)
+            if post.trouble:
+                post.trouble = ""
+                self._journal.say(f"{post.name} runs again")
+            if health.state != post.reported:
+                post.reported = health.state
+                self._journal.say(f"{post.name} is {health.state}{': ' if health.reason else ''}{health.reason}")
+
+    def _kill_hung(self, now_s: float) -> None:
+        for name in self._silence.hung(now_s):
+            for post in self._posts:
+                if post.name == name and post.child is not None:
+                    self._journal.say(f"{name} hangs: nothing heard for {LIMIT_S:g} s; ending it", level="warning")
+                    post.hangs = True
+                    post.child.kill()
+                    self._silence.forget(name)
+
+    def _speak(self, link: BusLink) -> None:
+        failed = {post.name: post.given_up for post in self._posts if post.given_up}
+        fault = "; ".join(f"{name} is given up: {reason}" for name, reason in failed.items())
+        trouble = "; ".join(post.trouble for post in self._posts if post.trouble)
+        link.say(fault, trouble, failed)
+
+    def _welcome(self) -> None:
+        if not self._page_answers and page.answers(self._site.tablet):
+            self._page_answers = True
+            self._journal.welcome(page.welcome(self._site.name, self._site.tablet))
+
+    def _end_all(self) -> None:
+        """SIGTERM to all, SIGKILL to those that still run after two seconds."""
+        self._journal.say("ending")
+        children = {post.name: post.child for post in self._posts if post.child is not None}
+        for child in children.values():
+            child.ask_to_end()
+        deadline_s = time.monotonic() + END_WITHIN_S
+        while any(child.poll() is None for child in children.values()) and time.monotonic() < deadline_s:
+            time.sleep(TICK_S / 5)
+            for post in self._posts:
+                if post.child is not None:
+                    self._pass_on(post, post.child)
+        for name, child in children.items():
+            if child.poll() is None:
+                self._journal.say(f"{name} did not end within {END_WITHIN_S:g} s and is killed", level="warning")
+                child.kill()
+        for post in self._posts:
+            if post.child is not None:
+                code = self._end(post, post.child)
+                if code not in (0, USER_ERROR) and code > 0:
+                    self._journal.say(f"{post.name} {describe_exit(code)} while ending", level="warning")
+        self._journal.say("ended")
+
+    def _end(self, post: Post, child: Child) -> int:
+        code = child.wait()
+        self._pass_on(post, child)
+        child.close()
+        post.child = None
+        return code

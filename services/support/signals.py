@@ -1,0 +1,38 @@
+"""Being told to stop."""
+
+import os
+import signal
+import socket
+import threading
+
+_STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+def stop_on_signals() -> threading.Event:
+    """An event that the first SIGINT, SIGTERM or SIGHUP sets; the second one ends the process at once.
+
+    Call it on the main thread. Python's own handlers run there between two instructions: they wait for long calls into
+    compiled code, and setting an event in one can wait for ever for a lock that the interrupted instruction holds. So the
+    signal's number goes through a socket to a thread, which Python does without the main thread. A signal that the
+    caller has this process ignore (nohup) stays ignored.
+    """
+    stop = threading.Event()
+    receiver, sender = socket.socketpair()
+    sender.setblocking(False)
+    signal.set_wakeup_fd(sender.fileno(), warn_on_full_buffer=False)
+    for number in _STOP_SIGNALS:
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, _leave_to_thread)
+
+    def wait() -> None:
+        with sender:  # Kept open for as long as the process lives.
+            receiver.recv(1)
+            stop.set()
+            os._exit(128 + receiver.recv(1)[0])
+
+    threading.Thread(target=wait, name="signals", daemon=True).start()
+    return stop
+
+
+def _leave_to_thread(_number: int, _frame: object) -> None:
+    pass
