@@ -136,6 +136,7 @@ class SmoothingConfig:
         difference_m: (17,) one sigma of that difference at 30 Hz; the square root of the inverse of eq. 8's gamma.
         difference_freedom: freedom of Student's t that the differences are taken to follow; infinite is a Gaussian.
         bend_m: (17,) one sigma of the second difference: no joint accelerates without bound.
+        carry_s: time constant with which velocity dies beyond the newest picture.
         knots: length of the window in grid instants.
         iterations: reweighting steps a tick; a position is stepped on in every tick that it is in the window.
         robust_sigmas: as in triangulation.
@@ -146,6 +147,7 @@ class SmoothingConfig:
     order: Literal[2, 3] = 3
     difference_m: Float = field(default_factory=lambda: by_distance_from_trunk(0.003, 0.005, 0.008))
     difference_freedom: float = 2.0
+    carry_s: float = 0.10
     bend_m: Float = field(default_factory=lambda: by_distance_from_trunk(0.03, 0.06, 0.15))
     knots: int = 24
     iterations: int = 2

@@ -90,6 +90,7 @@ class Smoother:
         """Improve all positions, and read out n instants (n,), naming views that agree within `memories_s` (n,) of each."""
         config = self._config
         lengths, sigmas = limbs.current()
+        newest_s = max(tracks.newest_s(slot) for slot in range(len(views)))
         points, covariance, seen = smooth_window(
             self.positions_m,
             self.known,
@@ -111,6 +112,8 @@ class Smoother:
             lengths,
             sigmas,
             self.covariance_m2,
+            newest_s / self._frame_s - self.first,
+            config.carry_s / self._frame_s,
             instants_s,
             memories_s,
         )

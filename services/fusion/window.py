@@ -13,6 +13,8 @@ _BAND = 12
 """Sub-diagonals and the diagonal."""
 _LEAST_SHARE = 0.02
 """No difference, however large, loses more of its penalty."""
+_OPEN_SHARE = 0.03
+"""Penalty of differences beyond the newest picture. Extrapolation makes them look small, which is no evidence that they are."""
 
 
 @compiled
@@ -89,7 +91,7 @@ def _add_pictures(
 
 
 @compiled
-def _add_differences(band: Float, x: Float, order: int, strength: float, freedom: float) -> None:
+def _add_differences(band: Float, x: Float, order: int, strength: float, freedom: float, held: float) -> None:
     """Penalty on differences, heavy-tailed: Student's t of this freedom, so that a throw is not ironed out (reweighted)."""
     knots = x.shape[0]
     stencil = np.array([-1.0, 3.0, -3.0, 1.0]) if order == 3 else np.array([1.0, -2.0, 1.0, 0.0])
@@ -103,6 +105,8 @@ def _add_differences(band: Float, x: Float, order: int, strength: float, freedom
         weight = strength
         if freedom < np.inf:
             weight *= max((freedom + 3.0) / (freedom + strength * size2), _LEAST_SHARE)
+            if first + order > held:
+                weight = min(weight, _OPEN_SHARE * strength)
         for a in range(order + 1):
             for b in range(a + 1):
                 for k in range(3):
@@ -216,6 +220,22 @@ def _read(x: Float, place: float, out: Float) -> None:
 
 
 @compiled
+def _read_carried(x: Float, place: float, held: float, carry: float, out: Float) -> None:
+    """As `_read`, but beyond what pictures hold, carried on with the velocity there, which dies away."""
+    steady = held - 0.5
+    if place <= steady or steady < 1.0:
+        _read(x, place, out)
+        return
+    before, after = np.empty(3), np.empty(3)
+    _read(x, steady - 0.25, before)
+    _read(x, steady + 0.25, after)
+    _read(x, steady, out)
+    reach = carry * (1.0 - np.exp(-(place - steady) / carry))
+    for k in range(3):
+        out[k] += 2.0 * (after[k] - before[k]) * reach
+
+
+@compiled
 def smooth_window(
     positions: Float,
     known: Bool,
@@ -237,6 +257,8 @@ def smooth_window(
     lengths: Float,
     length_sigmas: Float,
     spread: Float,
+    held: float,
+    carry: float,
     instants: Float,
     memories: Float,
 ) -> tuple[Float, Float, UInt32]:
@@ -255,8 +277,8 @@ def smooth_window(
             for camera in range(projections.shape[0]):
                 pictures = times[camera], counts[camera], pixels[camera], sigma[camera], usable[camera]
                 _add_pictures(band, right, x, start, frame, projections[camera], *pictures, scale2, j)
-            _add_differences(band, x, order, strength[j], freedom)
-            _add_differences(band, x, 2, bend[j], np.inf)
+            _add_differences(band, x, order, strength[j], freedom, held)
+            _add_differences(band, x, 2, bend[j], np.inf, held)
             for limb in range(ends.shape[0]):
                 if lengths[limb] > 0.0 and (ends[limb, 0] == j or ends[limb, 1] == j):
                     other = ends[limb, 1] if ends[limb, 0] == j else ends[limb, 0]
@@ -274,7 +296,7 @@ def smooth_window(
         known[j] = True
         for read in range(reads):
             place = (instants[read] - start) / frame
-            _read(x, place, points[read, j])
+            _read_carried(x, place, held, carry, points[read, j])
             # The later of the two positions around the instant is the less certain one.
             knot = min(int(np.ceil(place - 1e-6)), knots - 1)
             for k in range(3):
