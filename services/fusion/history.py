@@ -6,7 +6,7 @@ the filters run again from there, which costs microseconds.
 
 from dataclasses import dataclass, field
 
-from models.arrays import Float
+from models.arrays import Bool, Float
 from services.fusion.config import FilterConfig
 from services.fusion.joint_filter import Innovation, JointFilter
 from services.fusion.views import Sighting, Views
@@ -26,6 +26,7 @@ class _Step:
     t_s: float
     sighting: Sighting | None
     seeds: tuple[Seed, ...]
+    exchanged: Bool | None = None
     after: JointFilter = field(init=False)
 
 
@@ -58,6 +59,10 @@ class FilterHistory:
         """Start joints anew, or give them up, at a time within the history."""
         self._insert(_Step(t_s, None, seeds))
 
+    def exchange(self, mask: Bool) -> None:
+        """Exchange left and right of the flagged joints (17,) from the newest event on."""
+        self._insert(_Step(self.newest.t_s, None, (), mask))
+
     def observe(self, sighting: Sighting) -> Innovation | None:
         """Fuse a sighting at its own time; None if it is older than the history."""
         return self._insert(_Step(sighting.t_s, sighting, ()))
@@ -85,6 +90,8 @@ class FilterHistory:
                 step.after.alive[seed.joint] = False
             else:
                 step.after.seed(seed.joint, seed.point_m, seed.covariance_m2, self._config)
+        if step.exchanged is not None:
+            step.after.exchange(step.exchanged)
         if step.sighting is None:
             return None
         projection = self._views.projections[step.sighting.camera]

@@ -72,6 +72,11 @@ class JointFilter:
         self.covariance[joint, 6:, 6:] = np.eye(3) * acceleration**2
         self.alive[joint] = True
 
+    def exchange(self, mask: Bool) -> None:
+        """Exchange left and right of the flagged joints (17,)."""
+        order = np.where(mask, coco.MIRROR, np.arange(coco.COUNT))
+        self.state, self.covariance, self.alive = self.state[order], self.covariance[order], self.alive[order]
+
     def advance(self, t_s: float, config: FilterConfig) -> None:
         """Predict to a later time; an earlier one is ignored."""
         if t_s > self.t_s:

@@ -57,6 +57,8 @@ class Pupil:
         self._filters = FilterHistory(t_s, views, config.filter)
         self._limbs = LimbLengths(config.smoothing)
         self._agreed_s: Float = np.full((len(views), coco.COUNT), -np.inf)
+        self._swapped: Bool = np.zeros((len(views), coco.COUNT), np.bool_)
+        self._doubted_s: Float = np.full(coco.COUNT, np.inf)
         self._disagreements: Counts = np.zeros(coco.COUNT, np.int64)
         self._smooth_agreed_s: Float = np.full(coco.COUNT, -np.inf)
         self._live_agreed_s: Float = np.full(coco.COUNT, -np.inf)
@@ -88,12 +90,13 @@ class Pupil:
             return
         self.misses[camera] = 0
         self._identities[camera] = found.track
-        sighting, _ = repair(found, expected)
+        sighting, swapped = repair(found, expected)
         if not self._tracks.add(camera, sighting):
             return
         innovation = self._filters.observe(sighting)
         if innovation is not None:
             self._agreed_s[camera, innovation.used] = np.maximum(self._agreed_s[camera, innovation.used], t_s)
+        self._doubt_sides(camera, t_s, swapped)
         trunk = sighting.usable[_TRUNK]
         if trunk.sum() >= 3:
             centre = sighting.points_px[_TRUNK][trunk].mean(axis=0)
@@ -179,6 +182,21 @@ class Pupil:
             states.astype(np.uint8),
             np.where(known, views, 0).astype(np.uint32),
         )
+
+    def _doubt_sides(self, camera: int, t_s: float, swapped: Bool) -> None:
+        """If most cameras keep having to be repaired, it is the estimate whose left is right."""
+        self._swapped[camera] = swapped
+        fresh = [c for c in range(len(self._views)) if self._tracks.newest_s(c) >= t_s - _STALE_S]
+        most = 2 * self._swapped[fresh].sum(axis=0) > len(fresh)
+        self._doubted_s = np.where(most, np.minimum(self._doubted_s, t_s), np.inf)
+        wrong = t_s - self._doubted_s > _STALE_S
+        if wrong.any():
+            since_s = float(self._doubted_s[wrong].min())
+            self._tracks.exchange(wrong, since_s)
+            self._smoother.exchange(wrong, since_s)
+            self._filters.exchange(wrong)
+            self._swapped[:, wrong] = False
+            self._doubted_s[wrong] = np.inf
 
     def _seed(self, t_s: float, joints: Triangulated, which: Counts) -> None:
         doubt = np.eye(3) * _SEED_SIGMA_M**2

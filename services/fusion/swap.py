@@ -28,12 +28,15 @@ _CLIP: Final = 16.0
 """Squared distance in sigmas beyond which one more does not count: an outlier decides nothing."""
 _MARGIN: Final = 8.0
 """How much better an exchange must be before it is believed."""
+_ALONE: Final = 24.0
+"""The same for a head that turns without arms and legs: eyes and ears are close together, and noise would turn them."""
+_HEAD: Final = 2
 
 
 def repair(sighting: Sighting, expected: Expectation) -> tuple[Sighting, Bool]:
     """The sighting with left and right as expected, and which joints were exchanged (17,)."""
     seen = sighting.points_px, sighting.sigma_px, sighting.usable
-    swapped = find_swaps(*seen, expected.points_px, expected.variance_px2, expected.known, _CHAINS, _MIRROR, _CLIP, _MARGIN)
+    swapped = find_swaps(*seen, expected.points_px, expected.variance_px2, expected.known, _CHAINS, _MIRROR, _CLIP, _MARGIN, _ALONE)
     return exchange(sighting, swapped), swapped
 
 
@@ -57,6 +60,7 @@ def find_swaps(
     mirror: Float,
     clip: float,
     margin: float,
+    margin_alone: float,
 ) -> Bool:
     """For each chain, exchange nothing, or everything from one of its joints outwards, whichever fits best."""
     swapped = np.zeros(points.shape[0], np.bool_)
@@ -73,7 +77,8 @@ def find_swaps(
                     du, dv = points[seen, 0] - expected[place, 0], points[seen, 1] - expected[place, 1]
                     distance2 = min((du * du + dv * dv) / (sigma[seen] ** 2 + variance[place]), clip)
                     gain[level] += distance2 if seen == place else -distance2
-        best, best_level, total = margin, -1, 0.0
+        turned = swapped[chains[0, 0]] and swapped[chains[1, 0]]
+        best, best_level, total = margin_alone if chain == _HEAD and not turned else margin, -1, 0.0
         for level in range(chains.shape[1] - 1, -1, -1):
             total += gain[level]
             if total > best:

@@ -56,6 +56,13 @@ class Tracks:
         """Forget a slot's sightings."""
         self.counts[slot] = 0
 
+    def exchange(self, mask: Bool, since_s: float) -> None:
+        """Exchange left and right of the flagged joints (17,) in all sightings from an instant on."""
+        order = np.where(mask, coco.MIRROR, np.arange(coco.COUNT))
+        late = self.times_s >= since_s
+        for array in (self.points_px, self.sigma_px, self.usable):
+            array[late] = array[late][:, order]
+
     def newest_s(self, slot: int) -> float:
         """Time of the newest sighting, -inf if there is none."""
         count = int(self.counts[slot])

@@ -262,7 +262,7 @@ def smooth_window(
     instants: Float,
     memories: Float,
 ) -> tuple[Float, Float, UInt32]:
-    """The kernel of `Smoother.step`: improves positions in place; positions, covariances and agreeing views at instants come back."""
+    """The kernel of `Smoother.step`: positions are improved in place; what is read at the instants comes back."""
     joints, knots, reads = positions.shape[0], positions.shape[1], instants.shape[0]
     points, covariance = np.zeros((reads, joints, 3)), np.zeros((reads, joints, 3, 3))
     views = np.zeros((reads, joints), np.uint32)
