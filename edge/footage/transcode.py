@@ -4,6 +4,7 @@ So the edge grabs every picture for nothing and decodes only those that it looks
 """
 
 import io
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from pathlib import Path
 from typing import cast
@@ -36,8 +37,9 @@ def transcode(source: bytes, target: Path, camera: str) -> int:
     """
     part = target.with_name(f"{target.name}.part")
     try:
-        with av.open(io.BytesIO(source), "r") as video, av.open(str(part), "w", format="avi") as sink:
-            count = _write(video, sink)
+        with av.open(io.BytesIO(source), "r") as video:
+            rate = Fraction(video.streams.video[0].average_rate or 60)
+            count = write_motion_jpeg(part, _scaled(video), rate)
     except (av.FFmpegError, IndexError) as error:
         part.unlink(missing_ok=True)
         raise UserError(f"footage: {camera}: its video cannot be read ({error}); fetch it again") from error
@@ -45,21 +47,28 @@ def transcode(source: bytes, target: Path, camera: str) -> int:
     return count
 
 
-def _write(video: av.container.InputContainer, sink: av.container.OutputContainer) -> int:
-    rate = Fraction(video.streams.video[0].average_rate or 60)
-    stream = sink.add_stream("mjpeg", rate=rate, options={"strict": "unofficial"})
-    stream.width, stream.height = SIZE_PX
-    stream.pix_fmt = "yuvj420p"
-    count, rows = 0, slice(None)
-    for count, frame in enumerate(video.decode(video=0), start=1):
+def _scaled(video: av.container.InputContainer) -> Iterator[UInt8]:
+    rows: slice | None = None
+    for frame in video.decode(video=0):
         picture = cast(UInt8, frame.to_ndarray(format="bgr24"))
-        if count == 1:
-            rows = picture_rows(picture)
-        packet = av.Packet(encode_jpeg(cast(UInt8, cv2.resize(picture[rows], SIZE_PX, interpolation=cv2.INTER_AREA))))
-        packet.stream, packet.time_base, packet.is_keyframe = stream, 1 / rate, True
-        packet.pts = packet.dts = count - 1
-        packet.duration = 1
-        sink.mux(packet)
+        rows = rows or picture_rows(picture)
+        yield cast(UInt8, cv2.resize(picture[rows], SIZE_PX, interpolation=cv2.INTER_AREA))
+
+
+def write_motion_jpeg(path: Path, pictures: Iterable[UInt8], rate_hz: Fraction) -> int:
+    """Write BGR pictures (h, w, 3), all of one size, as an AVI file of JPEG pictures; returns their number."""
+    count = 0
+    with av.open(str(path), "w", format="avi") as sink:
+        stream = sink.add_stream("mjpeg", rate=rate_hz)
+        stream.pix_fmt = "yuvj420p"
+        for count, picture in enumerate(pictures, start=1):
+            if count == 1:
+                stream.height, stream.width = picture.shape[:2]
+            packet = av.Packet(encode_jpeg(picture))
+            packet.stream, packet.time_base, packet.is_keyframe = stream, 1 / rate_hz, True
+            packet.pts = packet.dts = count - 1
+            packet.duration = 1
+            sink.mux(packet)
     return count
 
 

@@ -1,0 +1,29 @@
+"""What the set-up installs, for tests that need it: a loud skip where it is missing, a failure in CI."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from edge.footage.prepare import is_ready
+
+ROOT = Path(__file__).parents[1]
+DATA = ROOT / "build"
+
+
+def require_footage() -> Path:
+    """The data folder, with the built-in footage in it."""
+    return _require(is_ready(DATA / "footage"), "the built-in footage is not in build/footage; run `make footage`")
+
+
+def require_networks() -> Path:
+    """The data folder, with the converted networks in it."""
+    return _require((DATA / "networks/installed.json").is_file(), "the networks are not in build/networks; run `make networks`")
+
+
+def _require(there: bool, reason: str) -> Path:
+    if not there and os.environ.get("CI"):
+        pytest.fail(reason)
+    if not there:
+        pytest.skip(reason)
+    return DATA
