@@ -8,7 +8,7 @@ import { Stage } from './stage/stage';
 
 /** Words change at most so often: nobody can read faster. */
 const WORDS_PERIOD_MS = 250;
-const DELAY_GAIN = 0.1;
+const DELAY_GAIN = 0.15;
 
 /** Joins the connection, the stage and the words. Holds the figure outside of the reactive state. */
 export class Viewer {
@@ -21,7 +21,6 @@ export class Viewer {
   private pose: Pose = standing();
   private hasFigure = false;
   private dropping = false;
-  private epoch: number | null = null;
   private delayMs: number | null = null;
   private figures = 0;
   private counted = { figures: 0, atMs: performance.now() };
@@ -36,7 +35,11 @@ export class Viewer {
     private readonly room: Room,
     private readonly root: HTMLElement,
   ) {
-    this.stage = new Stage(canvas, () => this.beforeDraw());
+    this.stage = new Stage(
+      canvas,
+      () => this.takeNewest(),
+      () => this.acknowledge(),
+    );
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
     this.link = new Link(`${scheme}://${location.host}/ws`, {
       motion: (buffer) => this.receive(buffer),
@@ -64,7 +67,7 @@ export class Viewer {
   private receive(buffer: ArrayBuffer): void {
     this.underWay += 1;
     try {
-      this.waiting = readMotionFrame(buffer); // an older one that was not drawn yet gives way
+      this.consider(readMotionFrame(buffer), performance.now());
     } catch (error) {
       if (!(error instanceof MotionFrameError)) throw error;
       this.room.unreadable += 1;
@@ -72,36 +75,39 @@ export class Viewer {
     this.stage.requestDraw();
   }
 
-  /** The newest frame becomes the figure; every frame that came since the last picture is acknowledged. */
-  private beforeDraw(): void {
-    const frame = this.waiting;
-    this.waiting = null;
-    if (frame !== null) this.take(frame, performance.now());
-    this.link.acknowledgeMotions(this.underWay);
-    this.underWay = 0;
-  }
-
-  private take(frame: MotionFrame, nowMs: number): void {
+  /** A frame waits to be drawn, in the place of an older one, unless it was under way for too long. */
+  private consider(frame: MotionFrame, nowMs: number): void {
     const underWay = underWayMs(frame, this.link.clock.boxMs(nowMs));
-    if (underWay !== null && underWay > TOO_LATE_MS) {
-      this.dropping = true;
+    this.dropping = underWay !== null && underWay > TOO_LATE_MS;
+    if (this.dropping) {
       this.room.droppedLate += 1;
       return;
     }
-    this.dropping = false;
-    if (!showsSomebody(frame)) return;
     if (frame.states.includes(JointState.Seen)) this.freshness.note(frame, nowMs);
-    if (this.freshness.isStale(nowMs)) return; // an old observation, or guesses only: `say` turns the figure grey
-    if (this.epoch !== frame.epoch) {
-      this.epoch = frame.epoch;
-      if (!this.hasFigure) this.stage.startAnew();
-    }
+    if (showsSomebody(frame)) this.waiting = frame;
+  }
+
+  /** The newest frame becomes the figure. */
+  private takeNewest(): void {
+    const frame = this.waiting;
+    this.waiting = null;
+    const nowMs = performance.now();
+    // Guesses alone, an observation that is only repeated, or a page that was hidden: `say` turns the figure grey.
+    if (frame === null || this.freshness.isStale(nowMs)) return;
+    if (!this.hasFigure) this.stage.startAnew();
     this.pose = complete(frame, this.pose);
     this.hasFigure = true;
     this.figures += 1;
     this.stage.show(this.pose);
     this.stage.frameOnce();
-    if (underWay !== null) this.noteDelay(underWay + frame.serverLatencyUs / 1000);
+    const boxMs = this.link.clock.boxMs(nowMs);
+    if (boxMs !== null) this.noteDelay(boxMs - Number(frame.tNewestNs / 1000n) / 1000);
+  }
+
+  /** Every frame that came since the picture before is dealt with. Only now, so that the next ones leave the box as late as can be. */
+  private acknowledge(): void {
+    this.link.acknowledgeMotions(this.underWay);
+    this.underWay = 0;
   }
 
   private noteDelay(delayMs: number): void {
@@ -112,7 +118,6 @@ export class Viewer {
     this.underWay = 0;
     this.waiting = null;
     this.dropping = false;
-    this.epoch = null;
     if (!this.link.connected) this.room.status = null; // what was known of the cameras is no longer
     this.freshness.reset();
     this.hasFigure = false;

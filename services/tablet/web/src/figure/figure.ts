@@ -1,4 +1,4 @@
-import { Group, Vector3, type Mesh } from 'three';
+import { Group, SphereGeometry, Vector3, type Mesh } from 'three';
 import { JointState } from '../protocol/motionFrame';
 import { Foot, Hand } from './extremities';
 import { Head } from './head';
@@ -7,7 +7,6 @@ import { BODY, DRAWN, LEFT, RIGHT, SKIN, VISOR, type Palette } from './materials
 import type { Pose } from './pose';
 import { FACE, Joint, TRUNK } from './skeleton';
 import { Trunk } from './trunk';
-import { SphereGeometry } from 'three';
 
 /** Length of trunk, thigh and shank of the body whose radii are given in this folder. */
 const REFERENCE_M = 0.48 + 0.42 + 0.41;
@@ -36,10 +35,10 @@ export class Figure {
     new Limb(Joint.RightKnee, Joint.RightAnkle, SHANK, RIGHT),
   ];
   private readonly sockets = [
-    new Socket(Joint.LeftShoulder, 0.056, LEFT),
-    new Socket(Joint.RightShoulder, 0.056, RIGHT),
-    new Socket(Joint.LeftHip, 0.083, LEFT),
-    new Socket(Joint.RightHip, 0.083, RIGHT),
+    new Socket(Joint.LeftShoulder, 0.052, LEFT),
+    new Socket(Joint.RightShoulder, 0.052, RIGHT),
+    new Socket(Joint.LeftHip, 0.084, BODY),
+    new Socket(Joint.RightHip, 0.084, BODY),
   ];
   private readonly hands = [new Hand(Joint.LeftElbow, Joint.LeftWrist), new Hand(Joint.RightElbow, Joint.RightWrist)];
   private readonly feet = [new Foot(Joint.LeftKnee, Joint.LeftAnkle), new Foot(Joint.RightKnee, Joint.RightAnkle)];
@@ -130,7 +129,7 @@ class Socket {
     private readonly radiusM: number,
     readonly palette: Palette,
   ) {
-    this.mesh = mesh(new SphereGeometry(1, 24, 16), palette);
+    this.mesh = mesh(new SphereGeometry(1, 20, 12), palette);
   }
 
   place(at: Vector3, scale: number): void {

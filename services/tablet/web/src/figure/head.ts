@@ -1,4 +1,4 @@
-import { Matrix4, Mesh, SphereGeometry, Vector3 } from 'three';
+import { Matrix4, Mesh, RingGeometry, SphereGeometry, Vector3, type BufferGeometry } from 'three';
 import { JointState } from '../protocol/motionFrame';
 import { alongY, mesh } from './limb';
 import { SKIN, VISOR } from './materials';
@@ -14,7 +14,7 @@ const SHOULDERS_TO_EARS_M = 0.2;
 
 /** Neck, head and a visor that shows which way the face looks. */
 export class Head {
-  readonly skull: Mesh = mesh(new SphereGeometry(1, 32, 24), SKIN);
+  readonly skull: Mesh = mesh(skullGeometry(), SKIN);
   readonly visor: Mesh = mesh(visorGeometry(), VISOR);
   readonly neck: Mesh = mesh(new SphereGeometry(1, 24, 16), SKIN);
 
@@ -84,8 +84,38 @@ function at(pose: Pose, joint: number): Vector3 {
   return new Vector3().fromArray(pose.positionsM, 3 * joint);
 }
 
-/** A band over the eyes, just above the skull's surface; the sphere's +z looks forward. */
-function visorGeometry(): SphereGeometry {
-  const [halfAngle, middle, halfHeight] = [0.92, 1.42, 0.27];
-  return new SphereGeometry(1.03, 24, 8, Math.PI / 2 - halfAngle, 2 * halfAngle, middle - halfHeight, 2 * halfHeight);
+/** An egg in the unit cube: narrower towards the chin (-y). */
+function skullGeometry(): BufferGeometry {
+  const geometry = new SphereGeometry(1, 28, 20);
+  const position = geometry.getAttribute('position');
+  for (let i = 0; i < position.count; i++) {
+    const point = egg(new Vector3().fromBufferAttribute(position, i));
+    position.setXYZ(i, point.x, point.y, point.z);
+  }
+  geometry.computeVertexNormals();
+  return geometry;
+}
+
+function egg(point: Vector3): Vector3 {
+  const below = Math.max(-point.y, 0);
+  point.x *= 1 - 0.24 * below * below;
+  point.z *= 1 - 0.12 * below * below;
+  return point;
+}
+
+/** A rounded visor over the eyes, just above the skull's surface; the skull's +z looks forward. */
+function visorGeometry(): BufferGeometry {
+  const geometry = new RingGeometry(0, 1, 40, 6);
+  const position = geometry.getAttribute('position');
+  for (let i = 0; i < position.count; i++) {
+    const [x, y] = [position.getX(i), position.getY(i)];
+    // From a disc towards a rectangle with round corners, ring by ring.
+    const stretch = Math.hypot(x, y) / Math.max((x ** 4 + y ** 4) ** 0.25, 1e-6);
+    const [azimuth, elevation] = [0.92 * stretch * x, 0.1 + 0.25 * stretch * y];
+    const [c, s] = [Math.cos(elevation), Math.sin(elevation)];
+    const point = egg(new Vector3(Math.sin(azimuth) * c, s, Math.cos(azimuth) * c)).multiplyScalar(1.035);
+    position.setXYZ(i, point.x, point.y, point.z);
+  }
+  geometry.computeVertexNormals();
+  return geometry;
 }

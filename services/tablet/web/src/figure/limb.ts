@@ -5,9 +5,9 @@ import type { Palette } from './materials';
 type Profile = readonly (readonly [along: number, radiusM: number])[];
 
 export const UPPER_ARM: Profile = [
-  [0, 0.05],
-  [0.2, 0.05],
-  [0.55, 0.045],
+  [0, 0.051],
+  [0.2, 0.049],
+  [0.55, 0.044],
   [1, 0.036],
 ];
 export const FOREARM: Profile = [
@@ -17,8 +17,8 @@ export const FOREARM: Profile = [
   [1, 0.024],
 ];
 export const THIGH: Profile = [
-  [0, 0.082],
-  [0.25, 0.08],
+  [0, 0.077],
+  [0.25, 0.079],
   [0.65, 0.064],
   [1, 0.05],
 ];
@@ -29,8 +29,8 @@ export const SHANK: Profile = [
   [1, 0.033],
 ];
 
-const AROUND = 24;
-const ALONG = 14;
+const AROUND = 20;
+const ALONG = 10;
 
 /** One segment between two joints: a turned body that is stretched along y and scaled with the person across, and a round far joint. */
 export class Limb {
@@ -44,7 +44,7 @@ export class Limb {
     readonly palette: Palette,
   ) {
     this.shaft = mesh(turned(profile), palette);
-    this.knob = mesh(new SphereGeometry(1, AROUND, 16), palette);
+    this.knob = mesh(new SphereGeometry(1, AROUND, 12), palette);
   }
 
   place(a: Vector3, b: Vector3, scale: number): void {

@@ -3,18 +3,30 @@ import type { Pose } from '../figure/pose';
 import { Joint } from '../figure/skeleton';
 
 /** Height of what the first view holds: a pupil with raised arms. */
-const VIEW_HEIGHT_M = 2.3;
+const VIEW_HEIGHT_M = 2.4;
 const VIEW_WIDTH_M = 1.9;
-const MIDDLE_M = 0.92;
+const MIDDLE_M = 0.84;
 /** The first view comes from the front, a little from the pupil's left and from above. */
 const AZIMUTH_OFFSET_RAD = 0.62;
 const ELEVATION_RAD = 0.2;
+const LIGHT_AZIMUTH_RAD = 0.7;
+const LIGHT_ELEVATION_RAD = 0.95;
+const LIGHT_DISTANCE_M = 6;
 
-/** Where the pupil is on the floor: the middle of the hips. */
+/** The pupil may move so far from the view's middle before the view follows, and with this time constant. */
+const FREE_M = 0.15;
+const FOLLOW_S = 0.25;
+
+/** What the view turns about: the middle of the hips, at the height of the middle of an upright pupil. */
 export function standpoint(pose: Pose, into: Vector3): Vector3 {
+  return hips(pose, into).setZ(MIDDLE_M);
+}
+
+/** The middle of the hips. */
+export function hips(pose: Pose, into: Vector3): Vector3 {
   const p = pose.positionsM;
-  const [l, r] = [3 * Joint.LeftHip, 3 * Joint.RightHip];
-  return into.set((p[l]! + p[r]!) / 2, (p[l + 1]! + p[r + 1]!) / 2, MIDDLE_M);
+  const middle = (axis: number): number => (p[3 * Joint.LeftHip + axis]! + p[3 * Joint.RightHip + axis]!) / 2;
+  return into.set(middle(0), middle(1), middle(2));
 }
 
 /** The direction that the pupil looks in, as an angle about the vertical; from the hips and shoulders. */
@@ -32,11 +44,18 @@ export function facingRad(pose: Pose): number {
 export function firstView(pose: Pose, target: Vector3, camera: PerspectiveCamera): Vector3 {
   const halfHeight = Math.tan((camera.fov * Math.PI) / 360);
   const distance = Math.max(VIEW_HEIGHT_M / 2 / halfHeight, VIEW_WIDTH_M / 2 / (halfHeight * camera.aspect));
-  const azimuth = facingRad(pose) + AZIMUTH_OFFSET_RAD;
-  return new Vector3(
-    target.x + distance * Math.cos(ELEVATION_RAD) * Math.cos(azimuth),
-    target.y + distance * Math.cos(ELEVATION_RAD) * Math.sin(azimuth),
-    target.z + distance * Math.sin(ELEVATION_RAD),
+  return around(facingRad(pose) + AZIMUTH_OFFSET_RAD, ELEVATION_RAD, distance).add(target);
+}
+
+/** Where the light comes from, seen from the pupil: over the right shoulder of the one who looks from the first view. */
+export function lightOffset(pose: Pose): Vector3 {
+  return around(facingRad(pose) + AZIMUTH_OFFSET_RAD + LIGHT_AZIMUTH_RAD, LIGHT_ELEVATION_RAD, LIGHT_DISTANCE_M);
+}
+
+function around(azimuth: number, elevation: number, distance: number): Vector3 {
+  const level = Math.cos(elevation);
+  return new Vector3(level * Math.cos(azimuth), level * Math.sin(azimuth), Math.sin(elevation)).multiplyScalar(
+    distance,
   );
 }
 
@@ -48,6 +67,3 @@ export function follow(target: Vector3, standpoint: Vector3, seconds: number, in
   const share = ((distance - FREE_M) / distance) * (1 - Math.exp(-seconds / FOLLOW_S));
   return into.multiplyScalar(share);
 }
-
-const FREE_M = 0.25;
-const FOLLOW_S = 0.35;

@@ -1,5 +1,4 @@
 import {
-  ACESFilmicToneMapping,
   DirectionalLight,
   HemisphereLight,
   PCFShadowMap,
@@ -10,13 +9,13 @@ import {
 } from 'three';
 import { Figure } from '../figure/figure';
 import { standing, type Pose } from '../figure/pose';
+import { Joint } from '../figure/skeleton';
 import { Floor } from './floor';
-import { firstView, follow, standpoint } from './framing';
+import { firstView, follow, hips, lightOffset, standpoint } from './framing';
 import { Orbit } from './orbit';
+import { PaceWatch, firstQuality, hasSoftwareOnly } from './quality';
 
 const MAX_PIXEL_RATIO = 1.5;
-/** From the standpoint: the light comes from the upper left of the first view, and its shadow covers a pupil who lies down. */
-const LIGHT_OFFSET_M = new Vector3(1.6, 2.6, 5.2);
 const SHADOW_REACH_M = 2.4;
 
 /** The scene: figure, floor, light and view. Draws when something changed, at most once a screen refresh, and not otherwise. */
@@ -27,30 +26,34 @@ export class Stage {
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
   private readonly camera = new PerspectiveCamera(32, 1, 0.1, 60);
-  private readonly light = new DirectionalLight(0xffffff, 2.1);
+  private readonly light = new DirectionalLight(0xffffff, 2.0);
   private readonly figure = new Figure();
   private readonly floor = new Floor();
   private readonly orbit: Orbit;
   private readonly observer: ResizeObserver;
   private readonly stand = new Vector3();
+  private lightOffset = lightOffset(standing());
   private pose: Pose = standing();
   private framed = false;
+  private quality = firstQuality(location.href, hasSoftwareOnly);
+  private readonly pace = new PaceWatch();
   private requested = 0;
+  private requestedMs = 0;
   private lastMs = 0;
 
   /**
    * @param canvas where to draw
    * @param beforeDraw called before each picture; hands over the newest pose by `show`
+   * @param afterDraw called when it is drawn
    */
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private readonly beforeDraw: () => void,
+    private readonly afterDraw: () => void,
   ) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: 'low-power' });
-    this.renderer.shadowMap.enabled = true;
+    this.renderer = new WebGLRenderer({ canvas, antialias: this.quality === 'full', alpha: true });
+    this.renderer.shadowMap.enabled = this.quality === 'full';
     this.renderer.shadowMap.type = PCFShadowMap;
-    this.renderer.toneMapping = ACESFilmicToneMapping;
-    this.renderer.toneMappingExposure = 1.12;
     this.camera.up.set(0, 0, 1);
     this.orbit = new Orbit(this.camera, canvas, () => this.requestDraw());
     this.light.castShadow = true;
@@ -66,7 +69,7 @@ export class Stage {
       near: 0.5,
       far: 12,
     });
-    const sky = new HemisphereLight(0xffffff, 0xc4cedd, 2.0);
+    const sky = new HemisphereLight(0xffffff, 0xaab6c8, 1.85);
     sky.position.set(0, 0, 1);
     this.scene.add(this.figure.group, this.floor.group, this.light, this.light.target, sky);
     this.show(this.pose);
@@ -90,8 +93,8 @@ export class Stage {
     this.figure.show(pose);
     standpoint(pose, this.stand);
     this.light.target.position.copy(this.stand).setZ(0);
-    this.light.position.copy(this.light.target.position).add(LIGHT_OFFSET_M);
-    this.floor.centre(this.stand.x, this.stand.y);
+    this.light.position.copy(this.light.target.position).add(this.lightOffset);
+    this.floor.place(this.stand, hips(pose, new Vector3()), this.joint(Joint.LeftAnkle), this.joint(Joint.RightAnkle));
     this.requestDraw();
   }
 
@@ -111,6 +114,7 @@ export class Stage {
   /** Back to the first view, from where the pupil is now. */
   resetView(gently = true): void {
     const target = standpoint(this.pose, new Vector3());
+    this.lightOffset = lightOffset(this.pose);
     this.orbit.moveTo(target, firstView(this.pose, target, this.camera), gently);
   }
 
@@ -120,7 +124,9 @@ export class Stage {
   }
 
   requestDraw(): void {
-    if (this.requested === 0) this.requested = requestAnimationFrame((nowMs) => this.draw(nowMs));
+    if (this.requested !== 0) return;
+    this.requestedMs = performance.now();
+    this.requested = requestAnimationFrame((nowMs) => this.draw(nowMs));
   }
 
   dispose(): void {
@@ -133,6 +139,7 @@ export class Stage {
 
   private draw(nowMs: number): void {
     this.requested = 0;
+    if (this.quality === 'full' && this.pace.tooSlow(performance.now() - this.requestedMs)) this.drawLight();
     this.beforeDraw();
     const seconds = Math.min((nowMs - this.lastMs) / 1000, 0.1);
     this.lastMs = nowMs;
@@ -140,6 +147,18 @@ export class Stage {
     if (this.orbit.update(nowMs)) this.requestDraw();
     this.renderer.render(this.scene, this.camera);
     this.drawn += 1;
+    this.afterDraw();
+  }
+
+  /** Gives up shadows and fine pixels; smooth edges cannot be given up without a new canvas. */
+  private drawLight(): void {
+    this.quality = 'light';
+    this.light.castShadow = false;
+    this.resize();
+  }
+
+  private joint(index: number): Vector3 {
+    return new Vector3().fromArray(this.pose.positionsM, 3 * index);
   }
 
   private resize(): void {
@@ -147,7 +166,7 @@ export class Stage {
     if (clientWidth === 0 || clientHeight === 0) return;
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, MAX_PIXEL_RATIO));
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, this.quality === 'full' ? MAX_PIXEL_RATIO : 1));
     this.renderer.setSize(clientWidth, clientHeight, false);
     if (!this.orbit.touched) this.resetView(false);
     this.requestDraw();

@@ -73,8 +73,10 @@ export const text = {
       if (left >= 2) return `${who} – the lesson goes on with ${COUNTS[left] ?? left}`;
       return `${who} – two cameras are needed for a figure`;
     },
-    slow: (slow: number[]): string =>
-      slow.length === 1 ? `Camera ${slow[0]} is slow` : `Cameras ${listed(slow)} are slow`,
+    slow: (slow: number[], all: boolean): string => {
+      if (all) return 'All cameras are slow – fast movement may be missed';
+      return slow.length === 1 ? `Camera ${slow[0]} is slow` : `Cameras ${listed(slow)} are slow`;
+    },
   },
 
   readings: {
