@@ -1,0 +1,216 @@
+"""The loop of an edge process over the in-memory bus, with fake networks and a real clock."""
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from edge.cameras.jpeg import JpegFrame
+from edge.cameras.source import MonotonicClock
+from edge.cameras.video import Schedule, Video, VideoSource
+from edge.library import Library
+from edge.process import EdgeLoop, main
+from models.camera.pinhole import Camera
+from models.camera.rig import Rig
+from models.config.site import CameraConfig, Site
+from models.errors import UserError
+from models.messages import codec, topics
+from models.messages.control import PoseNetwork, ViewControl
+from models.messages.health import CameraHealth, Health
+from models.messages.observation import Observation
+from models.process import Delivery, ProcessContext, Resources, Subscription
+from services.bus.memory import MemoryBus, MemoryRouter
+from tests.fake_networks import FakeDetector, FakePose
+from tests.small_video import spot_picture, video_of
+
+NAMES = ("cam01", "cam02")
+SECOND_NS = 1_000_000_000
+DEADLINE_S = 60.0
+
+
+def moving_spot() -> Video:
+    return video_of([spot_picture(np.array((100 + 4.0 * k, 110)), 6.0, (320, 240)) for k in range(20)])
+
+
+def context_for(bus: MemoryBus, data: Path, path: str = "cam01.avi", camera: str = "cam01") -> ProcessContext:
+    one = Camera("cam01", (320, 240), np.diag((300.0, 300.0, 1.0)), np.zeros(5), np.eye(3), np.zeros(3), np.zeros(2))
+    return ProcessContext(
+        name=f"edge-{camera}",
+        camera=camera,
+        site=Site(
+            version=1, name="test", calibration="rig.toml", cameras=[CameraConfig(name=n, kind="video", path=path) for n in NAMES]
+        ),
+        rig=Rig(tuple(replace(one, name=name) for name in NAMES)),
+        data=data,
+        start_ns=time.monotonic_ns(),
+        bus=bus,
+        stop=threading.Event(),
+        resources=lambda: Resources(0.25, 64.0),
+    )
+
+
+@dataclass
+class Box:
+    """A loop that runs, and a listener beside it."""
+
+    context: ProcessContext
+    control_bus: MemoryBus
+    observations: Subscription
+    healths: Subscription
+    sequence: int = 0
+    received: list[Observation] = field(default_factory=list)
+
+    def next_observation(self) -> Observation:
+        self.received.append(codec.decode(wait(self.observations).payload, Observation))
+        return self.received[-1]
+
+    def until(self, condition: Callable[[Observation], bool]) -> Observation:
+        deadline = time.monotonic() + DEADLINE_S
+        while time.monotonic() < deadline:
+            if condition(self.next_observation()):
+                return self.received[-1]
+        pytest.fail("waited in vain")
+
+    def health_until(self, condition: Callable[[Health, CameraHealth], bool], plan_hz: float | None = None) -> CameraHealth:
+        """The first health that fulfils the condition, renewing a plan meanwhile."""
+        deadline = time.monotonic() + DEADLINE_S
+        while time.monotonic() < deadline:
+            if plan_hz is not None:
+                self.plan(plan_hz)
+            health = codec.decode(wait(self.healths).payload, Health)
+            assert health.camera is not None
+            if condition(health, health.camera):
+                return health.camera
+        pytest.fail("waited in vain")
+
+    def plan(self, rate_hz: float, network: PoseNetwork = "thunder", search: bool = True) -> None:
+        self.sequence += 1
+        now_ns = time.monotonic_ns()
+        control = ViewControl("cam01", self.sequence, now_ns, rate_hz, self.context.start_ns, network, search, None)
+        self.control_bus.publish(topics.control("cam01"), codec.encode(control))
+
+
+def wait(subscription: Subscription) -> Delivery:
+    delivery = subscription.receive(DEADLINE_S)
+    assert delivery is not None, "nothing came"
+    return delivery
+
+
+@contextmanager
+def running(tmp_path: Path, make_source: Callable[[ProcessContext], VideoSource] | None = None) -> Iterator[Box]:
+    router = MemoryRouter()
+    listener, own = router.open(), router.open()
+    observations = listener.subscribe(topics.observation("cam01"), keep=100)
+    healths = listener.subscribe(topics.health("edge-cam01"), keep=10)
+    context = context_for(own, tmp_path)
+    source = (
+        make_source(context) if make_source else VideoSource(moving_spot(), Schedule(context.start_ns, 0, 30.0), MonotonicClock())
+    )
+    loop = EdgeLoop(context, source, Library(FakePose, FakeDetector, "thunder"), MonotonicClock())
+    thread = threading.Thread(target=loop.run, daemon=True)
+    thread.start()
+    try:
+        yield Box(context, listener, observations, healths)
+    finally:
+        context.stop.set()
+        thread.join(DEADLINE_S)
+        assert not thread.is_alive(), "the loop did not honour stop"
+
+
+def test_before_any_plan_the_camera_is_looked_at_ten_times_a_second_of_its_own_time(tmp_path: Path) -> None:
+    with running(tmp_path) as box:
+        seen = [box.next_observation() for _ in range(8)]
+    turns = [(observation.t_mid_ns - box.context.start_ns) * 10 // SECOND_NS for observation in seen]
+    assert len(set(turns)) == len(turns)
+    assert turns == sorted(turns)
+    assert [observation.sequence for observation in seen] == list(range(8))
+    assert all(observation.network == "thunder" and observation.t_published_ns > observation.t_mid_ns for observation in seen)
+    assert any(observation.persons for observation in seen)
+
+
+def test_loops_are_epochs_and_frames_are_stamped_by_the_shared_start(tmp_path: Path) -> None:
+    with running(tmp_path) as box:
+        box.plan(30.0)
+        last = box.until(lambda observation: observation.epoch >= 1)
+    assert last.persons == () or last.persons[0].track > 0
+    for observation in box.received:
+        picture = 20 * observation.epoch + observation.frame
+        assert abs(observation.t_mid_ns - box.context.start_ns - picture * SECOND_NS / 30) <= 1
+
+
+@pytest.mark.slow
+def test_a_plan_changes_the_rate_and_an_idle_one_stops_the_networks(tmp_path: Path) -> None:
+    with running(tmp_path) as box:
+        box.health_until(lambda _, camera: camera.target_hz == 5.0, plan_hz=5.0)
+        idle = box.health_until(lambda _, camera: camera.target_hz == 0.0 and camera.fresh_hz == 0.0, plan_hz=0.0)
+    assert idle.source_hz > 0
+
+
+def test_a_plan_for_another_network_is_followed_without_a_gap(tmp_path: Path) -> None:
+    with running(tmp_path) as box:
+        box.next_observation()
+        box.plan(10.0, "lightning")
+        box.until(lambda observation: observation.network == "lightning")
+    assert [observation.sequence for observation in box.received] == list(range(len(box.received)))
+
+
+@pytest.mark.slow
+def test_a_message_that_is_no_plan_is_reported_and_does_no_harm(tmp_path: Path) -> None:
+    with running(tmp_path) as box:
+        box.control_bus.publish(topics.control("cam01"), b"\x01\x03nonsense")
+        box.health_until(lambda health, _: health.state == "degraded" and "plan" in health.reason)
+        box.health_until(lambda health, _: health.state == "ok", plan_hz=10.0)
+
+
+@pytest.mark.slow
+def test_health_names_the_camera_and_the_process_is_alive_until_it_leaves(tmp_path: Path) -> None:
+    changes: list[tuple[str, bool]] = []
+    with running(tmp_path) as box:
+        box.control_bus.watch_alive(topics.ALL_ALIVE, lambda topic, alive: changes.append((topic, alive)))
+        health = codec.decode(wait(box.healths).payload, Health)
+        box.context.stop.set()
+    assert changes == [(topics.alive("edge-cam01"), True)]
+    camera = health.camera
+    assert camera is not None
+    assert (health.process, health.state, health.cpu_cores, health.rss_mb) == ("edge-cam01", "ok", 0.25, 64.0)
+    assert (camera.camera, camera.network, camera.target_hz) == ("cam01", "thunder", 10.0)
+    assert camera.source_hz > 0
+    assert {"decode", "crop", "pose", "encode"} <= set(camera.stage_ms)
+
+
+class Flawed(VideoSource):
+    """Every third picture arrives damaged."""
+
+    def grab(self, timeout_s: float) -> JpegFrame | None:
+        frame = super().grab(timeout_s)
+        return replace(frame, data=frame.data[:300]) if frame is not None and frame.index % 3 == 0 else frame
+
+
+@pytest.mark.slow
+def test_damaged_pictures_are_reported_and_the_others_are_used(tmp_path: Path) -> None:
+    def flawed(context: ProcessContext) -> VideoSource:
+        return Flawed(moving_spot(), Schedule(context.start_ns, 0, 30.0), MonotonicClock())
+
+    with running(tmp_path, flawed) as box:
+        box.plan(30.0)
+        box.health_until(
+            lambda health, _: health.state == "degraded" and "camera 'cam01': " in health.reason and "damaged" in health.reason
+        )
+        assert box.next_observation().frame % 3 != 0
+
+
+def test_a_missing_file_ends_the_process_with_one_line_that_names_it(tmp_path: Path) -> None:
+    bus = MemoryRouter().open()
+    with pytest.raises(UserError, match=r"camera 'cam01'.*footage/none\.avi is missing"):
+        main(context_for(bus, tmp_path, path="footage/none.avi"))
+    assert bus.tokens == set()
+
+
+def test_a_camera_that_the_site_does_not_know_is_named(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="camera 'cam09' is not in the site file"):
+        main(context_for(MemoryRouter().open(), tmp_path, camera="cam09"))

@@ -1,0 +1,78 @@
+"""Networks are there when they are needed, and a switch never stops the pictures."""
+
+import threading
+from collections.abc import Callable
+
+import pytest
+
+from edge.library import Library
+from models.errors import UserError
+from models.messages.control import PoseNetwork as PoseNetworkName
+from tests.fake_networks import FakeDetector, FakePose
+
+
+def test_another_network_is_loaded_beside_the_one_that_goes_on() -> None:
+    gate, loaded = threading.Event(), threading.Event()
+
+    def load(name: PoseNetworkName) -> FakePose:
+        if name == "lightning":
+            gate.wait(30)
+            loaded.set()
+        return FakePose(name)
+
+    library = Library(load, FakeDetector, "thunder")
+    assert library.pose("lightning").name == "thunder"
+    assert library.pose("lightning").name == "thunder"
+    gate.set()
+    assert loaded.wait(30)
+    wait_for(lambda: library.pose("lightning").name == "lightning")
+    assert library.current == "lightning"
+    assert library.pose("thunder").name == "thunder"
+
+
+def test_a_network_that_cannot_be_loaded_is_reported_once_and_the_other_goes_on() -> None:
+    attempts = []
+
+    def load(name: PoseNetworkName) -> FakePose:
+        attempts.append(name)
+        if name == "lightning":
+            raise UserError("network movenet-lightning is damaged")
+        return FakePose(name)
+
+    library = Library(load, FakeDetector, "thunder")
+    assert library.problem == ""
+    library.pose("lightning")
+    wait_for(lambda: library.problem != "")
+    assert library.pose("lightning").name == "thunder"
+    assert library.problem == "network movenet-lightning is damaged"
+    assert attempts == ["thunder", "lightning"]
+
+
+def test_without_its_first_network_a_camera_does_not_start() -> None:
+    def load(name: PoseNetworkName) -> FakePose:
+        raise UserError(f"network movenet-{name}: missing")
+
+    with pytest.raises(UserError, match="movenet-thunder"):
+        Library(load, FakeDetector, "thunder")
+
+
+def test_the_detector_is_loaded_at_its_first_use_and_once() -> None:
+    made = []
+
+    def load() -> FakeDetector:
+        made.append(FakeDetector())
+        return made[-1]
+
+    library = Library(FakePose, load, "thunder")
+    assert made == []
+    assert library.detector() is library.detector()
+    assert len(made) == 1
+
+
+def wait_for(condition: Callable[[], bool]) -> None:
+    pause = threading.Event()
+    for _ in range(3000):
+        if condition():
+            return
+        pause.wait(0.01)
+    pytest.fail("waited 30 s in vain")

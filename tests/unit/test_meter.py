@@ -1,0 +1,58 @@
+"""The health message counts what happened in its second and says in words what is wrong."""
+
+import pytest
+
+from edge.meter import Meter
+from models.process import Resources
+
+SECOND_NS = 1_000_000_000
+USED = Resources(0.4, 120.0)
+
+
+def meter() -> Meter:
+    return Meter("edge-cam01", 77, "cam01", t_report_ns=0, t_picture_ns=0)
+
+
+def test_rates_and_costs_are_of_the_last_second_and_totals_go_on() -> None:
+    counted = meter()
+    for k in range(30):
+        counted.grabbed(k * SECOND_NS // 30, 1)
+    counted.inferred, counted.skipped, counted.spent_ns = 10, 3, {"pose": 250_000_000}
+    counted.waited(4_000_000)
+    counted.waited(9_000_000)
+    assert not counted.is_due(SECOND_NS - 1)
+    assert counted.is_due(SECOND_NS)
+    health = counted.report(SECOND_NS, 10.0, "thunder", "", USED)
+    camera = health.camera
+    assert camera is not None
+    assert (health.process, health.pid, health.state, health.reason, health.cpu_cores, health.rss_mb) == (
+        "edge-cam01",
+        77,
+        "ok",
+        "",
+        0.4,
+        120.0,
+    )
+    assert (camera.source_hz, camera.fresh_hz, camera.target_hz, camera.skipped, camera.backlog_ms) == (30, 10, 10, 3, 9)
+    assert camera.stage_ms == {"pose": 25.0}
+    later = counted.report(2 * SECOND_NS, 10.0, "thunder", "", USED).camera
+    assert later is not None
+    assert (later.source_hz, later.fresh_hz, later.skipped, later.backlog_ms, later.stage_ms) == (0, 0, 3, 0, {"pose": 0.0})
+
+
+@pytest.mark.parametrize(
+    ("silent_s", "damaged", "problem", "reason"),
+    [
+        (3, 0, "", "camera 'cam01' has shown nothing for 3 s"),
+        (0, 4, "", "camera 'cam01': 4 damaged pictures in the last second"),
+        (0, 0, "network lightning is damaged", "network lightning is damaged"),
+    ],
+)
+def test_what_is_wrong_is_said(silent_s: int, damaged: int, problem: str, reason: str) -> None:
+    counted = meter()
+    now_ns = 10 * SECOND_NS
+    counted.grabbed(now_ns - silent_s * SECOND_NS, 1)
+    counted.damaged = damaged
+    health = counted.report(now_ns, 10.0, "thunder", problem, USED)
+    assert (health.state, health.reason) == ("degraded", reason)
+    assert counted.report(now_ns, 10.0, "thunder", "", USED).state == ("degraded" if silent_s else "ok")
