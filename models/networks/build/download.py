@@ -12,6 +12,7 @@ import urllib.error
 import urllib.request
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -105,15 +106,16 @@ def _fetch_persistently(url: str, part: Path, pause: Callable[[float], None]) ->
 
 def _fetch_rest(url: str, part: Path) -> None:
     """Append to `part` what it still lacks; start over if the server cannot send a rest."""
-    if urlsplit(url).scheme not in _SCHEMES:
-        raise UserError(f"{part.stem}: the registry's address has an unknown scheme ({urlsplit(url).scheme})")
+    scheme = urlsplit(url).scheme
+    if scheme not in _SCHEMES:
+        raise UserError(f"{part.stem}: the registry's address has an unknown scheme ({scheme})")
     have = part.stat().st_size if part.is_file() else 0
     headers = {"Accept-Encoding": "identity", "User-Agent": "kinebox-setup"}
     if have:
         headers["Range"] = f"bytes={have}-"
     request = urllib.request.Request(url, headers=headers)  # noqa: S310 - the scheme is checked above
     try:
-        response = urllib.request.urlopen(request, timeout=_TIMEOUT_S, context=_trust())  # noqa: S310
+        response = urllib.request.urlopen(request, timeout=_TIMEOUT_S, context=_trust() if scheme == "https" else None)  # noqa: S310
     except urllib.error.HTTPError as error:
         if error.code == http.client.REQUESTED_RANGE_NOT_SATISFIABLE and have:
             return  # nothing is lacking; the hash decides
@@ -143,6 +145,7 @@ def _extent(response: "http.client.HTTPResponse", have: int) -> tuple[int, int |
     return 0, int(length) if length else None
 
 
+@cache
 def _trust() -> ssl.SSLContext:
     context = ssl.create_default_context()
     for variable in _CERTIFICATE_VARIABLES:
