@@ -1,0 +1,53 @@
+"""A rig that is written is read back to the last digit."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from models.arrays import Float
+from models.camera.pinhole import Camera
+from models.camera.rig import Rig, decode_rig, encode_rig
+
+numbers = st.floats(-1e4, 1e4)
+
+
+def rotation(vector: Float) -> Float:
+    """The rotation of a quaternion with real part 1 (Cayley)."""
+    x, y, z = vector
+    cross = np.array(((0, -z, y), (z, 0, -x), (-y, x, 0)))
+    turned: Float = np.linalg.solve(np.eye(3) - cross, np.eye(3) + cross)
+    return turned
+
+
+cameras = st.builds(
+    lambda name, size, focal, centre, distortion, vector, translation, shift: Camera(
+        name,
+        size,
+        np.array(((focal, 0, centre[0]), (0, focal, centre[1]), (0, 0, 1))),
+        distortion,
+        rotation(vector),
+        translation,
+        shift,
+    ),
+    st.text(min_size=1, max_size=12).filter(lambda name: name.isprintable()),
+    st.tuples(st.integers(16, 8000), st.integers(16, 8000)),
+    st.floats(1, 1e4),
+    arrays(np.float64, 2, elements=numbers),
+    arrays(np.float64, 5, elements=st.floats(-1, 1)),
+    arrays(np.float64, 3, elements=st.floats(-2, 2)),
+    arrays(np.float64, 3, elements=numbers),
+    arrays(np.float64, 2, elements=numbers),
+)
+
+
+@pytest.mark.slow
+@given(st.lists(cameras, min_size=1, max_size=4, unique_by=lambda camera: camera.name), st.text())
+def test_round_trip(written: list[Camera], source: str) -> None:
+    read = decode_rig(encode_rig(Rig(tuple(written)), source), "rig.toml")
+    assert read.names == tuple(camera.name for camera in written)
+    for a, b in zip(written, read, strict=True):
+        assert a.size_px == b.size_px
+        for field in ("matrix_px", "distortion", "rotation", "translation_m", "shift_px"):
+            assert np.array_equal(getattr(a, field), getattr(b, field))
