@@ -83,6 +83,10 @@ class Room:
         self._publisher.join()
         self._fusion.close()
 
+    def join_bus(self) -> MemoryBus:
+        """One more bus of this room, as of another process."""
+        return self._router.open()
+
     def start_server(self) -> None:
         """Have the tablet process listen."""
         self._server = _Server(self._router, self.port)

@@ -1,0 +1,2 @@
+/** Read by the build, by svelte-check and by editors. */
+export default {};

@@ -1,0 +1,121 @@
+import { describe, expect, it } from 'vitest';
+import { BoxClock } from '../src/connection/boxClock';
+import { Freshness, STALE_AFTER_MS, underWayMs } from '../src/connection/freshness';
+import { phaseOf, type PhaseInputs } from '../src/connection/phase';
+import { reconnectDelayMs } from '../src/connection/reconnect';
+import type { MotionFrame } from '../src/protocol/motionFrame';
+
+function frame(tNewestMs: number, serverLatencyMs = 100): MotionFrame {
+  return {
+    kind: 'live',
+    sequence: 0,
+    epoch: 0,
+    tNs: 0n,
+    tNewestNs: BigInt(tNewestMs) * 1_000_000n,
+    serverLatencyUs: serverLatencyMs * 1000,
+    outOfRange: false,
+    positionsM: new Float32Array(51),
+    sigmaMm: new Uint16Array(17),
+    states: new Uint8Array(17),
+    views: new Uint8Array(17),
+  };
+}
+
+describe('reconnecting', () => {
+  it('waits 250 ms at first and never longer than 5 s', () => {
+    expect(reconnectDelayMs(0, 0)).toBe(250);
+    for (let failures = 0; failures < 60; failures++) {
+      for (const random of [0, 0.5, 0.999]) {
+        expect(reconnectDelayMs(failures, random)).toBeGreaterThanOrEqual(250);
+        expect(reconnectDelayMs(failures, random)).toBeLessThanOrEqual(5000);
+      }
+    }
+  });
+
+  it('waits longer after every failure', () => {
+    const delays = [0, 1, 2, 3, 4, 5].map((failures) => reconnectDelayMs(failures, 0.5));
+    expect(delays).toEqual([...delays].sort((a, b) => a - b));
+    expect(delays[4]).toBeGreaterThan(2500);
+  });
+
+  it('spreads the tablets of a school over half of the time', () => {
+    expect(reconnectDelayMs(9, 0.999) - reconnectDelayMs(9, 0)).toBeGreaterThan(2400);
+  });
+});
+
+describe("the box's clock", () => {
+  it('is not known before the first answer', () => {
+    expect(new BoxClock().boxMs(0)).toBeNull();
+    expect(new BoxClock().roundTripMs).toBeNull();
+  });
+
+  it('is measured however wrong the clock of the tablet is', () => {
+    const clock = new BoxClock();
+    clock.addPong(1000, 9_000_010, 1020);
+    expect(clock.boxMs(2000)).toBe(9_001_000);
+  });
+
+  it('believes the quickest answer and not the newest', () => {
+    const clock = new BoxClock();
+    clock.addPong(0, 5, 10);
+    clock.addPong(1000, 1300, 1400);
+    expect(clock.boxMs(2000)).toBe(2000);
+    expect(clock.roundTripMs).toBe(400);
+  });
+
+  it('forgets with the connection', () => {
+    const clock = new BoxClock();
+    clock.addPong(0, 5, 10);
+    clock.reset();
+    expect(clock.boxMs(0)).toBeNull();
+  });
+});
+
+describe('freshness', () => {
+  it('begins stale: no data must never look fine', () => {
+    expect(new Freshness().isStale(0)).toBe(true);
+  });
+
+  it('ends 1.5 s after the exposure, not after the arrival', () => {
+    const freshness = new Freshness();
+    freshness.note(frame(1, 400), 10_000);
+    expect(freshness.isStale(9_600 + STALE_AFTER_MS)).toBe(false);
+    expect(freshness.isStale(9_601 + STALE_AFTER_MS)).toBe(true);
+  });
+
+  it('is not renewed by frames that repeat an old observation', () => {
+    const freshness = new Freshness();
+    for (let nowMs = 0; nowMs <= 3000; nowMs += 33) freshness.note(frame(1, 100), nowMs);
+    expect(freshness.isStale(3000)).toBe(true);
+  });
+
+  it('knows how long a frame was under way only with the clock of the box', () => {
+    expect(underWayMs(frame(5000, 100), null)).toBeNull();
+    expect(underWayMs(frame(5000, 100), 5130)).toBe(30);
+  });
+});
+
+describe('the phase', () => {
+  const live: PhaseInputs = {
+    connected: true,
+    everConnected: true,
+    failures: 0,
+    hasFigure: true,
+    stale: false,
+    dropping: false,
+    pupil: 'found',
+  };
+
+  it.each<[string, Partial<PhaseInputs>, string]>([
+    ['fresh motion', {}, 'live'],
+    ['no connection yet', { connected: false, everConnected: false }, 'connecting'],
+    ['several failures', { connected: false, everConnected: false, failures: 3 }, 'offline'],
+    ['a connection that broke', { connected: false }, 'offline'],
+    ['no figure yet', { hasFigure: false, stale: true, pupil: 'unknown' }, 'waiting'],
+    ['a figure that became old', { stale: true }, 'stale'],
+    ['a pupil who left', { stale: true, pupil: 'searching' }, 'waiting'],
+    ['frames that are all too late', { stale: true, dropping: true }, 'late'],
+  ])('with %s', (_name, change, phase) => {
+    expect(phaseOf({ ...live, ...change })).toBe(phase);
+  });
+});

@@ -1,0 +1,92 @@
+import { describe, expect, it } from 'vitest';
+import { complete, showsSomebody, standing, unsure } from '../src/figure/pose';
+import { Figure } from '../src/figure/figure';
+import { Joint, STANDING_M } from '../src/figure/skeleton';
+import { JointState, type MotionFrame } from '../src/protocol/motionFrame';
+import { facingRad } from '../src/stage/framing';
+
+function seen(shift = [0, 0, 0]): MotionFrame {
+  return {
+    kind: 'live',
+    sequence: 0,
+    epoch: 0,
+    tNs: 0n,
+    tNewestNs: 0n,
+    serverLatencyUs: 0,
+    outOfRange: false,
+    positionsM: STANDING_M.map((value, i) => value + shift[i % 3]!),
+    sigmaMm: new Uint16Array(17),
+    states: new Uint8Array(17).fill(JointState.Seen),
+    views: new Uint8Array(17),
+  };
+}
+
+function forget(frame: MotionFrame, ...joints: number[]): void {
+  for (const joint of joints) {
+    frame.states[joint] = JointState.Unknown;
+    frame.positionsM.fill(0, 3 * joint, 3 * joint + 3);
+  }
+}
+
+describe('a pose', () => {
+  it('keeps an unknown arm where it was on the body, and unknown', () => {
+    const frame = seen([2, 1, 0.1]);
+    forget(frame, Joint.LeftElbow, Joint.LeftWrist);
+    const pose = complete(frame, standing());
+    const wrist = 3 * Joint.LeftWrist;
+    expect(pose.positionsM[wrist]).toBeCloseTo(STANDING_M[wrist]! + 2, 5);
+    expect(pose.positionsM[wrist + 2]).toBeCloseTo(STANDING_M[wrist + 2]! + 0.1, 5);
+    expect(pose.states[Joint.LeftWrist]).toBe(JointState.Unknown);
+  });
+
+  it('carries an unknown hip with the rest of the trunk', () => {
+    const frame = seen([0, -3, 0]);
+    forget(frame, Joint.RightHip);
+    const pose = complete(frame, standing());
+    expect(pose.positionsM[3 * Joint.RightHip + 1]).toBeCloseTo(STANDING_M[3 * Joint.RightHip + 1]! - 3, 5);
+  });
+
+  it('believes nothing any more when it has become old', () => {
+    const pose = unsure(complete(seen(), standing()));
+    expect(Math.max(...pose.states)).toBe(JointState.Guessed);
+  });
+
+  it('shows nobody without a joint of the trunk', () => {
+    const frame = seen();
+    expect(showsSomebody(frame)).toBe(true);
+    forget(frame, Joint.LeftShoulder, Joint.RightShoulder, Joint.LeftHip, Joint.RightHip);
+    expect(showsSomebody(frame)).toBe(false);
+  });
+
+  it('looks along +x when it stands', () => {
+    expect(facingRad(standing())).toBeCloseTo(0, 5);
+  });
+});
+
+describe('the figure', () => {
+  it('is without colour while nothing is known', () => {
+    const figure = new Figure();
+    figure.show(standing());
+    expect(figure.colouredShare).toBe(0);
+  });
+
+  it('is coloured where every joint of a part was seen, and only there', () => {
+    const figure = new Figure();
+    const pose = complete(seen(), standing());
+    figure.show(pose);
+    expect(figure.colouredShare).toBe(1);
+    pose.states[Joint.LeftKnee] = JointState.Guessed;
+    figure.show(pose);
+    expect(figure.colouredShare).toBeLessThan(1);
+    figure.show(unsure(pose));
+    expect(figure.colouredShare).toBe(0);
+  });
+
+  it('survives a pose in which everything lies in one point', () => {
+    const figure = new Figure();
+    figure.show({ positionsM: new Float32Array(51), states: new Uint8Array(17).fill(JointState.Guessed) });
+    figure.group.traverse((part) => {
+      expect(part.matrix.elements.every(Number.isFinite)).toBe(true);
+    });
+  });
+});

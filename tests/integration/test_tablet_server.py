@@ -1,0 +1,231 @@
+"""The tablet process over real sockets: what a client gets, what a bad one cannot do, and what stops a start."""
+
+import json
+import queue
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, ExitStack
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from websockets.exceptions import ConnectionClosed, ConnectionClosedError, InvalidStatus
+from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Origin
+
+from models.config.site import TabletConfig
+from models.errors import UserError
+from models.messages import codec, topics
+from models.messages.health import Health
+from services.tablet import motion_frame, openapi, process
+from services.tablet.audience import MAX_CLIENTS
+from tests.browser.room import CAMERAS, Room
+
+GENEROUS_S = 30.0
+
+
+@pytest.fixture
+def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Room]:
+    """A room whose page is one line, so that these tests do not need it built."""
+    (tmp_path / "index.html").write_text("<title>page</title>", encoding="utf-8")
+    (tmp_path / "assets").mkdir()
+    (tmp_path / "assets" / "index-1.js").write_text("", encoding="utf-8")
+    monkeypatch.setattr(process, "PAGE", tmp_path)
+    with Room() as made:
+        yield made
+
+
+def join(room: Room, origin: Origin | None = None) -> AbstractContextManager[ClientConnection]:
+    return connect(room.page.replace("http", "ws") + "ws", compression=None, proxy=None, origin=origin)
+
+
+def next_motion(client: ClientConnection) -> motion_frame.MotionFrame:
+    while True:
+        message = client.recv(timeout=GENEROUS_S)
+        if isinstance(message, bytes):
+            return motion_frame.unpack(message)
+
+
+def next_motion_forever(client: ClientConnection) -> None:
+    while True:
+        next_motion(client)
+
+
+def motions_that_wait(client: ClientConnection) -> int:
+    """Motions that have already arrived."""
+    count = 0
+    while True:
+        try:
+            count += isinstance(client.recv(timeout=0), bytes)
+        except TimeoutError:
+            return count
+
+
+def next_json(client: ClientConnection, kind: str) -> dict[str, Any]:
+    while True:
+        message = client.recv(timeout=GENEROUS_S)
+        if isinstance(message, str) and json.loads(message)["type"] == kind:
+            said: dict[str, Any] = json.loads(message)
+            return said
+
+
+def acknowledge(client: ClientConnection, motions: int, statuses: int = 0) -> None:
+    client.send(json.dumps({"type": "ack", "motions": motions, "statuses": statuses}))
+
+
+def until(room: Room, key: str, at_least: float) -> dict[str, Any]:
+    deadline_s = time.monotonic() + GENEROUS_S
+    while time.monotonic() < deadline_s:
+        status: dict[str, Any] = httpx.get(room.page + "api/status").json()
+        if status[key] is not None and status[key] >= at_least:
+            return status
+        time.sleep(0.05)
+    raise AssertionError(f"'{key}' never reached {at_least}")
+
+
+def test_a_client_learns_of_the_room_and_then_sees_it_move(room: Room) -> None:
+    with join(room) as client:
+        assert [camera["name"] for camera in next_json(client, "status")["cameras"]] == list(CAMERAS)
+        first = next_motion(client)
+        now_ns = time.monotonic_ns()
+        assert 0 < first.t_newest_ns < now_ns, "a client on the box measures latency on the box's own clock"
+        acknowledge(client, 1)
+        assert next_motion(client).sequence > first.sequence
+
+
+def test_a_client_that_does_not_answer_gets_two_frames_and_then_the_newest(room: Room) -> None:
+    with join(room) as client, join(room) as quick:
+        stalled = [next_motion(client), next_motion(client)]
+        for answered in range(1, 31):
+            newest = next_motion(quick)
+            acknowledge(quick, answered)
+        assert motions_that_wait(client) == 0
+        acknowledge(client, 2)
+        assert next_motion(client).sequence >= newest.sequence > stalled[-1].sequence + 20
+
+
+def test_statuses_wait_for_an_answer_too(room: Room) -> None:
+    with join(room) as client:
+        first = next_json(client, "status")
+        until(room, "box_time_us", first["box_time_us"] + 3_000_000)
+        acknowledge(client, 0, statuses=1)
+        assert next_json(client, "status")["box_time_us"] > first["box_time_us"] + 2_000_000, "the ones between were replaced"
+
+
+def test_many_clients_each_see_every_step_forward(room: Room) -> None:
+    seen: queue.Queue[list[int]] = queue.Queue()
+
+    def watch() -> None:
+        with join(room) as client:
+            sequences = []
+            for answered in range(1, 16):
+                sequences.append(next_motion(client).sequence)
+                acknowledge(client, answered)
+            seen.put(sequences)
+
+    watchers = [threading.Thread(target=watch) for _ in range(10)]
+    for watcher in watchers:
+        watcher.start()
+    for _ in watchers:
+        sequences = seen.get(timeout=GENEROUS_S)
+        assert sequences == sorted(set(sequences))
+    for watcher in watchers:
+        watcher.join()
+    assert httpx.get(room.page + "api/status").json()["rejected_client_messages"] == 0
+
+
+def test_malformed_messages_are_counted_and_kill_nothing(room: Room) -> None:
+    bad: list[str | bytes] = ["", "{", "[]", "null", '{"type":"ack"}', '{"type":"nonsense"}', b"\x00\xff"]
+    bad += ['{"type":"ack","motions":999999,"statuses":0}', '{"type":"ping","id":-1}', '{"type":"ping","id":1,"extra":2}']
+    with join(room) as client:
+        for message in bad:
+            client.send(message)
+        assert until(room, "rejected_client_messages", len(bad))["rejected_client_messages"] == len(bad)
+        client.send('{"type":"ping","id":5}')
+        assert next_json(client, "pong")["id"] == 5
+
+
+def test_an_endless_message_costs_its_sender_the_connection_and_nobody_else(room: Room) -> None:
+    with join(room) as client, join(room) as other:
+        client.send("x" * 100_000)
+        with pytest.raises(ConnectionClosedError, match="1009"):
+            next_motion_forever(client)
+        next_motion(other)
+
+
+def test_another_sites_page_may_not_watch(room: Room) -> None:
+    with pytest.raises(InvalidStatus, match="403"), join(room, origin=Origin("http://elsewhere.example")):
+        pass
+    with join(room, origin=Origin(room.page.rstrip("/"))) as client:
+        next_motion(client)
+
+
+def test_a_full_house_is_said_to_be_full(room: Room) -> None:
+    with ExitStack() as clients:
+        for _ in range(MAX_CLIENTS):
+            clients.enter_context(join(room))
+        until(room, "clients", MAX_CLIENTS)
+        with join(room) as late, pytest.raises(ConnectionClosed, match="too many tablets"):
+            late.recv(timeout=GENEROUS_S)
+
+
+def test_broken_bus_messages_are_counted_and_reported(room: Room) -> None:
+    bus = room.join_bus()
+    reports = bus.subscribe(topics.health("tablet"), keep=10)
+    bus.publish(topics.motion("live"), b"\x01\x02 broken")
+    bus.publish(topics.health("edge-cam0"), b"")
+    until(room, "rejected_bus_messages", 2)
+    deadline_s = time.monotonic() + GENEROUS_S
+    while time.monotonic() < deadline_s:
+        delivery = reports.receive(1.0)
+        health = codec.decode(delivery.payload, Health) if delivery else None
+        if health and health.state == "degraded":
+            assert "2 messages" in health.reason
+            return
+    pytest.fail("the tablet process never said that it could not read messages")
+
+
+def test_the_process_is_alive_on_the_bus_while_it_runs(room: Room) -> None:
+    seen: list[tuple[str, bool]] = []
+    room.join_bus().watch_alive(topics.alive("tablet"), lambda topic, alive: seen.append((topic, alive)))
+    room.stop_server()
+    assert seen == [(topics.alive("tablet"), True), (topics.alive("tablet"), False)]
+
+
+def test_the_page_is_served_with_headers_that_keep_it_to_itself(room: Room) -> None:
+    front = httpx.get(room.page)
+    assert front.text == "<title>page</title>"
+    assert "default-src 'self'" in front.headers["content-security-policy"]
+    assert front.headers["cache-control"] == "no-cache"
+    assert "immutable" in httpx.get(room.page + "assets/index-1.js").headers["cache-control"]
+    assert httpx.get(room.page + "docs").status_code == 404
+    assert httpx.get(room.page + "../process.py").status_code == 404
+
+
+def test_a_port_that_is_taken_is_named_with_what_to_do() -> None:
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        port = other.getsockname()[1]
+        with pytest.raises(UserError, match=rf"port {port}.*\[tablet\] in the site file") as error:
+            process.listen(TabletConfig(host="127.0.0.1", port=port))
+        assert "\n" not in str(error.value)
+
+
+def test_an_address_that_is_not_this_machines_is_named() -> None:
+    with pytest.raises(UserError, match=r"cannot listen on 203\.0\.113\.9 port 8080"):
+        process.listen(TabletConfig(host="203.0.113.9", port=8080))
+
+
+def test_a_page_that_is_not_built_stops_the_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(process, "PAGE", tmp_path / "dist")
+    with pytest.raises(UserError, match="make web"):
+        process.main(None)  # type: ignore[arg-type]  # nothing else is looked at before
+
+
+def test_the_description_for_the_page_is_current() -> None:
+    written = openapi.FILE.read_text(encoding="utf-8")
+    assert written == openapi.description(), "run `python -m services.tablet.openapi`, then `npm run types` in services/tablet/web"

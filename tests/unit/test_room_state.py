@@ -1,0 +1,157 @@
+"""What the page is told of the room, for every way in which a part of it can be missing."""
+
+import numpy as np
+import pytest
+
+from models.messages.health import CameraHealth, FusionHealth, Health
+from models.messages.motion import CameraUse, JointState, Motion
+from models.skeleton import coco
+from services.tablet.messages import CameraStatus
+from services.tablet.room_state import RoomState
+
+S = 1_000_000_000
+T0 = 1_000 * S
+
+
+def room() -> RoomState:
+    return RoomState("gym", ("a", "b"), wished_hz=30.0, started_ns=T0)
+
+
+def motion(t_newest_ns: int, state: JointState = JointState.SEEN, epoch: int = 0) -> Motion:
+    return Motion(
+        kind="live",
+        sequence=0,
+        epoch=epoch,
+        t_ns=t_newest_ns,
+        t_newest_ns=t_newest_ns,
+        t_published_ns=t_newest_ns,
+        joints_m=np.zeros((coco.COUNT, 3), np.float32),
+        covariance_m2=np.zeros((coco.COUNT, 3, 3), np.float32),
+        states=np.full(coco.COUNT, state, np.uint8),
+        views=np.zeros(coco.COUNT, np.uint32),
+        cameras=(CameraUse("a", True, 30.0), CameraUse("b", False, float("nan"))),
+    )
+
+
+def health(
+    state: str = "ok",
+    source_hz: float = 30.0,
+    fresh_hz: float = 14.5,
+    target_hz: float = 15.0,
+    backlog_ms: float = 20.0,
+    reason: str = "",
+) -> Health:
+    camera = CameraHealth("a", source_hz, fresh_hz, target_hz, 3, backlog_ms, "thunder", {})
+    return Health("edge-a", 1, T0, state, reason, 0.3, 200.0, camera=camera)  # type: ignore[arg-type]
+
+
+def camera(state: RoomState, now_ns: int) -> CameraStatus:
+    return state.status(now_ns, 0).cameras[0]
+
+
+def judged(state: RoomState, now_ns: int) -> tuple[str, str]:
+    status = camera(state, now_ns)
+    return status.state, status.reason
+
+
+def test_cameras_stand_in_the_order_of_the_site_file() -> None:
+    assert [entry.name for entry in room().status(T0, 0).cameras] == ["a", "b"]
+
+
+def test_a_camera_that_was_never_heard_of_is_starting_and_then_lost() -> None:
+    assert judged(room(), T0 + 5 * S) == ("starting", "starting")
+    assert judged(room(), T0 + 21 * S) == ("lost", "never_seen")
+
+
+@pytest.mark.parametrize(
+    ("said", "expected"),
+    [
+        (health(), ("ok", "none")),
+        (health(state="failed", reason="no file"), ("lost", "failed")),
+        (health(source_hz=0.0), ("lost", "no_frames")),
+        (health(target_hz=0.0, fresh_hz=0.0), ("ok", "resting")),
+        (health(backlog_ms=400.0), ("slow", "backlog")),
+        (health(fresh_hz=9.0), ("slow", "behind")),
+        (health(fresh_hz=5.0, target_hz=5.0), ("slow", "sparse")),
+        (health(state="degraded", reason="Lightning instead of Thunder"), ("slow", "degraded")),
+    ],
+)
+def test_a_camera_is_judged_by_what_it_says(said: Health, expected: tuple[str, str]) -> None:
+    state = room()
+    state.receive_health(said, T0 + S)
+    assert judged(state, T0 + S) == expected
+    assert camera(state, T0 + S).detail == said.reason
+
+
+def test_a_camera_that_falls_silent_is_lost_and_shows_no_rates() -> None:
+    state = room()
+    state.receive_health(health(), T0 + S)
+    assert camera(state, T0 + 3 * S).fresh_hz == 14.5
+    assert judged(state, T0 + 5 * S) == ("lost", "silent")
+    assert camera(state, T0 + 5 * S).fresh_hz is None
+
+
+def test_a_camera_whose_process_ends_is_lost_at_once_and_starts_anew() -> None:
+    state = room()
+    state.set_alive("edge-a", True, T0)
+    state.receive_health(health(), T0 + 30 * S)
+    state.set_alive("edge-a", False, T0 + 30 * S)
+    assert judged(state, T0 + 30 * S) == ("lost", "process_gone")
+    state.set_alive("edge-a", True, T0 + 60 * S)
+    assert judged(state, T0 + 61 * S) == ("starting", "starting")
+    state.receive_health(health(), T0 + 62 * S)
+    assert judged(state, T0 + 62 * S) == ("ok", "none")
+
+
+def test_rate_and_latency_are_those_of_the_last_seconds() -> None:
+    state = room()
+    for frame in range(150):
+        now_ns = T0 + frame * S // 30
+        state.receive_motion(motion(now_ns - (80 + frame % 10) * 1_000_000), now_ns)
+    now_ns = T0 + 149 * S // 30
+    status = state.status(now_ns, 0)
+    assert status.live_hz == pytest.approx(30.0, abs=0.5)
+    assert status.latency is not None
+    assert status.latency.p50_ms == pytest.approx(84.0, abs=1.0)
+    assert status.latency.p95_ms == pytest.approx(89.0, abs=1.0)
+
+
+def test_without_motion_there_is_no_rate_and_no_latency() -> None:
+    state = room()
+    state.receive_motion(motion(T0), T0)
+    status = state.status(T0 + 10 * S, 0)
+    assert status.live_hz == 0.0
+    assert status.latency is None
+    assert status.motion_age_ms == pytest.approx(10_000)
+
+
+def test_a_camera_counts_as_used_only_while_something_is_seen() -> None:
+    state = room()
+    state.receive_health(health(), T0)
+    state.receive_motion(motion(T0), T0)
+    assert [entry.used for entry in state.status(T0, 0).cameras] == [True, False]
+    state.receive_motion(motion(T0, JointState.GUESSED), T0)
+    assert not camera(state, T0).used
+
+
+def test_fusion_that_is_silent_or_gone_knows_nothing_of_the_pupil() -> None:
+    state = room()
+    fusion = FusionHealth(30.0, 4.0, 0.8, 0, "found")
+    state.receive_health(Health("fusion", 2, T0, "ok", "", 0.2, 100.0, fusion=fusion), T0)
+    assert state.status(T0, 0).pupil == "found"
+    assert state.status(T0 + 10 * S, 0).pupil == "unknown"
+    state.set_alive("fusion", False, T0)
+    assert state.status(T0, 0).pupil == "unknown"
+
+
+def test_failures_that_the_supervisor_reports_are_passed_on() -> None:
+    state = room()
+    state.receive_health(Health("supervisor", 3, T0, "failed", "edge-a was given up after 5 restarts", 0.0, 20.0), T0)
+    (process,) = state.status(T0, 0).processes
+    assert (process.name, process.state, process.reason) == ("supervisor", "failed", "edge-a was given up after 5 restarts")
+
+
+def test_a_new_epoch_is_passed_on() -> None:
+    state = room()
+    state.receive_motion(motion(T0, epoch=4), T0)
+    assert state.status(T0, 0).epoch == 4
