@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
+import msgspec
 import numpy as np
 
 from edge.cameras.source import Frame
@@ -81,16 +82,20 @@ class EdgeConfig:
 
 @dataclass(frozen=True)
 class EdgeState:
-    """What is carried from frame to frame."""
+    """What is carried from frame to frame.
+
+    `t_seam_ns` is the instant of the first picture of the present epoch; 0 in the first one.
+    """
 
     epoch: int | None = None
+    t_seam_ns: int = 0
     sequence: int = 0
     tracks: Tracks = field(default_factory=Tracks)
 
 
 @dataclass
 class Stages:
-    """Adds up the CPU time of each stage, by a clock that is passed in (nanoseconds of this thread)."""
+    """Adds up the CPU time of each stage, by a clock that is passed in (nanoseconds of this process, all threads)."""
 
     cpu_ns: Callable[[], int]
     spent_ns: dict[str, int] = field(default_factory=dict)
@@ -139,7 +144,8 @@ def observe(
     Raises:
         PictureError: the frame cannot be decoded; `state` stays valid.
     """
-    tracks = state.tracks if state.epoch == frame.epoch else state.tracks.forgotten()
+    state = _across_seam(state, frame)
+    tracks, control = state.tracks, _of_this_epoch(control, state.t_seam_ns)
     pictures = _Pictures(frame, stages)
     if wants_detection(tracks, control, frame.t_mid_ns, config.tracking):
         boxes_px = _detect(pictures, frame, networks, stages)
@@ -157,7 +163,22 @@ def observe(
         network=networks.pose.name,
         persons=persons,
     )
-    return replace(state, epoch=frame.epoch, sequence=state.sequence + 1, tracks=tracks), observation
+    return replace(state, sequence=state.sequence + 1, tracks=tracks), observation
+
+
+def _across_seam(state: EdgeState, frame: Frame) -> EdgeState:
+    """The state for a frame's epoch: at a seam everyone is forgotten."""
+    if state.epoch == frame.epoch:
+        return state
+    t_seam_ns = 0 if state.epoch is None else frame.t_mid_ns
+    return replace(state, epoch=frame.epoch, t_seam_ns=t_seam_ns, tracks=state.tracks.forgotten())
+
+
+def _of_this_epoch(control: ViewControl, t_seam_ns: int) -> ViewControl:
+    """The plan without a prediction from before the seam: the person was elsewhere then."""
+    if control.prediction is None or control.prediction.t_ns >= t_seam_ns:
+        return control
+    return msgspec.structs.replace(control, search=True, prediction=None)
 
 
 def _detect(pictures: _Pictures, frame: Frame, networks: Networks, stages: Stages) -> Float:

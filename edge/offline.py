@@ -31,7 +31,7 @@ def observe_video(
     config = config or EdgeConfig()
     tracking = replace(config.tracking, looks_max=config.tracking.people_max)
     config = replace(config, tracking=tracking)
-    stages = stages or Stages(time.thread_time_ns)
+    stages = stages or Stages(time.process_time_ns)
     control = default_control(video.camera, 0, 1, 0, rate_hz)
     state, observations = EdgeState(), []
     for frame in video.frames(rate_hz):

@@ -153,7 +153,7 @@ class EdgeLoop:
 
     def _infer(self, frame: Frame, control: ViewControl) -> None:
         networks = Networks(self._library.pose(control.network), self._library.detector)
-        stages = Stages(time.thread_time_ns, self._meter.spent_ns)
+        stages = Stages(time.process_time_ns, self._meter.spent_ns)
         try:
             self._progress.state, observation = observe(self._progress.state, frame, networks, control, self._config, stages)
         except PictureError:

@@ -9,7 +9,7 @@ import sys
 import zipfile
 from pathlib import Path
 
-from edge.footage.index import Index
+from edge.footage.index import INDEX_NAME, Index
 from models.errors import UserError
 
 PACKAGE, VERSION = "pose2sim", "0.10.49"
@@ -36,6 +36,7 @@ def prepare(data: Path) -> Path:
     """
     folder = data / "footage"
     if is_ready(folder):
+        (folder / INDEX_NAME).touch()  # make compares times
         return folder
     from models.networks.build.registry import fetch_pypi  # noqa: PLC0415 - a start with everything in place needs neither this nor PyAV
 

@@ -178,8 +178,9 @@ def _vote(peaks: Peaks, offsets: Float32) -> tuple[Float32, Float32]:
     cells = offsets.shape[-1]
     rows = np.clip(peaks.rows[:, np.newaxis] + _WINDOW[0], 0, cells - 1)
     columns = np.clip(peaks.columns[:, np.newaxis] + _WINDOW[1], 0, cells - 1)
-    weights = peaks.scores[_JOINTS, rows, columns]
-    weights = weights / weights.sum(axis=1, keepdims=True)
+    # Where nobody is, every score may be zero to the last bit; then all cells count alike.
+    weights = peaks.scores[_JOINTS, rows, columns] + np.finfo(np.float32).tiny
+    weights /= weights.sum(axis=1, keepdims=True)
     y = rows + offsets[2 * _JOINTS, rows, columns]
     x = columns + offsets[2 * _JOINTS + 1, rows, columns]
     votes = np.stack((x, y), axis=-1).astype(np.float32)  # (17, votes, 2)

@@ -81,6 +81,15 @@ def test_a_new_epoch_forgets_everyone() -> None:
     assert run.detector.calls == 2
 
 
+def test_a_prediction_from_before_the_seam_is_not_followed_into_the_new_epoch() -> None:
+    run = Run()
+    run.see(spot_at(100, 110))
+    old = ViewControl("cam01", 1, 0, 10.0, 0, "thunder", False, CropPrediction(Crop(100, 110, 130, 0.0), 99 * MS, 0, 0))
+    assert run.see(spot_at(230, 110), old, epoch=1).persons[0].crop.centre_x_px == pytest.approx(230, abs=2)
+    new = ViewControl("cam01", 2, 0, 10.0, 0, "thunder", False, CropPrediction(Crop(231, 111, 130, 0.0), 200 * MS, 0, 0))
+    assert run.see(spot_at(230, 110), new, epoch=1).persons[0].crop == Crop(231, 111, 130, 0.0)
+
+
 def test_a_prediction_spares_the_detector_even_at_the_first_picture() -> None:
     run = Run()
     control = ViewControl("cam01", 1, 0, 10.0, 0, "thunder", False, CropPrediction(Crop(150, 110, 130, 0.2), 0, 0, 0))
