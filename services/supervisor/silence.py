@@ -1,7 +1,7 @@
 """Which processes hang: they run, but nothing has been heard of them for too long. Pure: times come in, names go out.
 
 Health is what is listened for, since a token of liveliness is held by the network's threads even when the loop of a process
-hangs. Nobody is judged before the first health message of its life, because starting up may take a while. All health
+hangs. Before the first health message of its life a process has much more time, because starting up may take a while. All health
 comes through the router's process, so while that is silent nobody else can be judged, nor for a while after it is back.
 """
 
@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 
 LIMIT_S = 3.0
 """Health comes once a second; whoever misses three has hung."""
+START_LIMIT_S = 120.0
+"""Who was never heard has hung after this long; a box without compiled kernels takes a minute to start."""
 ROUTER_GAP_S = 1.5
 """A router that is silent for longer than this may be what keeps the others silent."""
 
@@ -18,11 +20,18 @@ class Silence:
     """When each process was heard last. `router` is the name of the process through which all are heard."""
 
     router: str
+    _started_s: dict[str, float] = field(default_factory=dict)
     _heard_s: dict[str, float] = field(default_factory=dict)
     _router_back_s: float = float("-inf")
 
+    def start(self, name: str, now_s: float) -> None:
+        """A process was started."""
+        self.forget(name)
+        self._started_s[name] = now_s
+
     def forget(self, name: str) -> None:
-        """A process ended or was started: it is judged from its next message on."""
+        """A process ended, or it was decided that it shall."""
+        self._started_s.pop(name, None)
         self._heard_s.pop(name, None)
 
     def hear(self, name: str, now_s: float) -> None:
@@ -33,6 +42,7 @@ class Silence:
 
     def restart_clocks(self, now_s: float) -> None:
         """The listener itself was held up: nobody can be blamed for the time until now."""
+        self._started_s = dict.fromkeys(self._started_s, now_s)
         self._heard_s = dict.fromkeys(self._heard_s, now_s)
         self._router_back_s = now_s
 
@@ -40,13 +50,18 @@ class Silence:
         """The processes to be taken for hung."""
         router_heard_s = self._heard_s.get(self.router)
         if router_heard_s is None:
-            return []
+            return [self.router] if self._never_came(self.router, now_s) else []
         if now_s - router_heard_s > LIMIT_S:
             return [self.router]
         if now_s - router_heard_s > ROUTER_GAP_S:
             return []
-        return [
-            name
-            for name, heard_s in self._heard_s.items()
-            if name != self.router and now_s - max(heard_s, self._router_back_s) > LIMIT_S
-        ]
+        return [name for name in self._started_s if name != self.router and self._silent(name, now_s)]
+
+    def _silent(self, name: str, now_s: float) -> bool:
+        heard_s = self._heard_s.get(name)
+        if heard_s is None:
+            return self._never_came(name, now_s)
+        return now_s - max(heard_s, self._router_back_s) > LIMIT_S
+
+    def _never_came(self, name: str, now_s: float) -> bool:
+        return name in self._started_s and now_s - self._started_s[name] > START_LIMIT_S

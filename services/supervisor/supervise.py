@@ -19,7 +19,7 @@ from services.supervisor.journal import Journal
 from services.supervisor.policy import USER_ERROR
 from services.supervisor.post import Post, describe_exit
 from services.supervisor.preflight import Check, check_everything
-from services.supervisor.silence import LIMIT_S, Silence
+from services.supervisor.silence import Silence
 from services.support.signals import stop_on_signals
 
 ROUTER = "fusion"
@@ -123,7 +123,7 @@ class Supervisor:
     def _start(self, post: Post) -> None:
         command = post.spec.command(self._site_file, self._data, self._start_ns)
         post.manned_by(Child(command, self._environment))
-        self._silence.forget(post.name)
+        self._silence.start(post.name, time.monotonic())
 
     def _attend(self, post: Post, now_s: float) -> None:
         if post.child is not None:
@@ -166,7 +166,7 @@ class Supervisor:
         for name in self._silence.hung(now_s):
             for post in self._posts:
                 if post.name == name and post.child is not None:
-                    self._journal.say(f"{name} hangs: nothing heard for {LIMIT_S:g} s; ending it", level="warning")
+                    self._journal.say(f"{name} hangs: nothing heard for too long; ending it", level="warning")
                     post.hangs = True
                     post.child.kill()
                     self._silence.forget(name)

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from models.config.site import SupervisorConfig
 from services.supervisor.policy import GiveUp, History, Restart, decide
-from services.supervisor.silence import LIMIT_S, ROUTER_GAP_S, Silence
+from services.supervisor.silence import LIMIT_S, ROUTER_GAP_S, START_LIMIT_S, Silence
 
 CONFIGS = st.builds(SupervisorConfig, max_restarts=st.integers(0, 8), window_s=st.floats(1, 120))
 UPTIMES_S = st.lists(st.floats(0, 100), min_size=1, max_size=40)
@@ -65,6 +65,13 @@ def test_a_restart_is_never_in_the_past_and_the_first_comes_at_once(uptimes_s: l
 NAMES = ("fusion", "edge-a", "edge-b", "tablet")
 
 
+def all_started() -> Silence:
+    silence = Silence("fusion")
+    for name in NAMES:
+        silence.start(name, 0.0)
+    return silence
+
+
 def silence_after(lateness_s: dict[str, list[float]], hangs: dict[str, float], end_s: float) -> tuple[dict[str, float], float]:
     """Let all report once a second, somewhat late, until they hang; the time at which each is found, and the end."""
     arrivals = sorted(
@@ -74,7 +81,7 @@ def silence_after(lateness_s: dict[str, list[float]], hangs: dict[str, float], e
         # What the router does not pass on does not arrive either.
         if second + late_s < min(hangs.get(name, end_s), hangs.get("fusion", end_s))
     )
-    silence, found, tick_s = Silence("fusion"), dict[str, float](), 0.0
+    silence, found, tick_s = all_started(), dict[str, float](), 0.0
     while tick_s < end_s:
         while arrivals and arrivals[0][0] <= tick_s:
             arrived_s, name = arrivals.pop(0)
@@ -105,10 +112,10 @@ def test_exactly_the_one_that_hangs_is_found_and_soon(lateness_s: dict[str, list
 
 
 def test_after_the_router_is_back_the_others_have_time_to_report() -> None:
-    silence = Silence("fusion")
+    silence = all_started()
     for name in NAMES:
         silence.hear(name, 0.0)
-    silence.forget("fusion")
+    silence.start("fusion", 30.0)
     assert silence.hung(60.0) == []
     silence.hear("fusion", 60.0)
     assert silence.hung(60.0 + ROUTER_GAP_S) == []
@@ -117,18 +124,23 @@ def test_after_the_router_is_back_the_others_have_time_to_report() -> None:
     assert set(silence.hung(63.5)) == set(NAMES) - {"fusion"}
 
 
-def test_a_process_that_is_starting_is_not_judged() -> None:
-    silence = Silence("fusion")
-    silence.hear("fusion", 0.0)
-    silence.hear("edge-a", 0.0)
-    silence.forget("edge-a")
-    for second in range(30):
+def test_a_process_that_is_starting_has_more_time_but_not_for_ever() -> None:
+    silence = all_started()
+    for second in range(int(START_LIMIT_S) + 1):
         silence.hear("fusion", float(second))
+        silence.hear("tablet", float(second))
+        silence.hear("edge-b", float(second))
         assert silence.hung(float(second)) == []
+    assert silence.hung(START_LIMIT_S + 0.1) == ["edge-a"]
+
+
+def test_a_router_that_never_comes_has_hung_and_nobody_else() -> None:
+    assert all_started().hung(START_LIMIT_S) == []
+    assert all_started().hung(START_LIMIT_S + 0.1) == ["fusion"]
 
 
 def test_a_supervisor_that_was_held_up_blames_nobody() -> None:
-    silence = Silence("fusion")
+    silence = all_started()
     for name in NAMES:
         silence.hear(name, 0.0)
     silence.restart_clocks(100.0)
