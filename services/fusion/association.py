@@ -15,6 +15,7 @@ import numpy as np
 from models.arrays import Bool, Float
 from models.skeleton import coco
 from services.fusion.candidates import PERSONS, Candidates
+from services.fusion.compiled import Counts, compiled
 from services.fusion.config import FusionConfig
 from services.fusion.joint_filter import Expectation
 from services.fusion.swap import repair
@@ -56,29 +57,50 @@ class Hypothesis:
         return centre
 
 
-def median_distance_m(sighting: Sighting, expected: Expectation) -> float:
-    """Median distance of keypoints from where they are expected, sides ignored; infinite if too few can be compared."""
-    direct = np.linalg.norm(sighting.points_px - expected.points_px, axis=1)
-    crossed = np.linalg.norm(sighting.points_px[_MIRROR] - expected.points_px, axis=1)
-    crossed[~(sighting.usable[_MIRROR])] = np.inf
-    direct[~sighting.usable] = np.inf
-    distance = np.minimum(direct, crossed) / expected.px_per_m
-    compared = distance[expected.known & np.isfinite(distance)]
-    return float(np.median(compared)) if compared.size >= _MIN_JOINTS else np.inf
-
-
 def pick_pupil(persons: tuple[Sighting, ...], expected: Expectation, gate_m: float) -> Sighting | None:
-    """The person of one picture who is where the pupil is expected; None if nobody is."""
+    """The person of one picture who is where the pupil is expected; None if nobody is.
+
+    Compared is the median distance, sides ignored, of keypoints from where they are expected; the expectation's own uncertainty
+    widens the gate, to twice at most.
+    """
     best, nearest = None, gate_m
-    uncertainty = 0.0
-    if expected.known.any():
-        sigma_px = np.sqrt(np.median(expected.variance_px2[expected.known]))
-        uncertainty = float(sigma_px / np.median(expected.px_per_m[expected.known]))
     for person in persons:
-        distance = median_distance_m(person, expected) - min(uncertainty, gate_m)
+        distance = median_distance(
+            person.points_px,
+            person.usable,
+            expected.points_px,
+            expected.variance_px2,
+            expected.px_per_m,
+            expected.known,
+            _MIRROR,
+            gate_m,
+        )
         if distance < nearest:
             best, nearest = person, distance
     return best
+
+
+@compiled
+def median_distance(
+    points: Float, usable: Bool, expected: Float, variance: Float, px_per_m: Float, known: Bool, mirror: Counts, allowance: float
+) -> float:
+    """Median distance in metres less the median uncertainty, at most `allowance`; infinite if too few can be compared."""
+    distances, sigmas, count = np.empty(points.shape[0]), np.empty(points.shape[0]), 0
+    for j in range(points.shape[0]):
+        if not known[j]:
+            continue
+        nearest2 = np.inf
+        for seen in (j, mirror[j]):
+            if usable[seen]:
+                nearest2 = min(nearest2, (points[seen, 0] - expected[j, 0]) ** 2 + (points[seen, 1] - expected[j, 1]) ** 2)
+        if nearest2 < np.inf:
+            distances[count] = np.sqrt(nearest2) / px_per_m[j]
+            sigmas[count] = np.sqrt(variance[j]) / px_per_m[j]
+            count += 1
+    if count < _MIN_JOINTS:
+        return np.inf
+    distance: float = np.median(distances[:count]) - min(np.median(sigmas[:count]), allowance)
+    return distance
 
 
 class PersonSearch:

@@ -17,8 +17,11 @@ Counts = npt.NDArray[np.int64]
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
 
+_REORDERING = {"reassoc", "contract", "nsz", "arcp"}
+"""Sums may be reordered and fused, so that they vectorise; infinities and NaN keep their meaning."""
+
 
 def compiled(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
     """Compile on first call for the types given; divisions by zero give infinities, as in numpy."""
-    kernel: Callable[Arguments, Result] = numba.njit(cache=True, error_model="numpy")(function)
+    kernel: Callable[Arguments, Result] = numba.njit(cache=True, error_model="numpy", fastmath=_REORDERING)(function)
     return kernel

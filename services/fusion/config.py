@@ -149,8 +149,8 @@ class SmoothingConfig:
     difference_freedom: float = 2.0
     carry_s: float = 0.10
     bend_m: Float = field(default_factory=lambda: by_distance_from_trunk(0.03, 0.06, 0.15))
-    knots: int = 24
-    iterations: int = 2
+    knots: int = 18
+    iterations: int = 1
     robust_sigmas: float = 3.0
     limb_sigma: float = 0.02
     limb_samples: int = 90

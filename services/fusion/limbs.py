@@ -29,10 +29,12 @@ class LimbLengths:
         lengths, sigmas = np.zeros(len(ENDS)), np.ones(len(ENDS))
         if not np.isfinite(self._config.limb_sigma):
             return lengths, sigmas
-        enough = np.isfinite(self._samples).sum(axis=1) >= _MIN_SAMPLES
-        if enough.any():
-            lengths[enough] = np.nanmedian(self._samples[enough], axis=1)
-            sigmas[enough] = self._config.limb_sigma * lengths[enough]
+        ordered = np.sort(self._samples, axis=1)
+        count = np.isfinite(ordered).sum(axis=1)
+        middle = ordered[np.arange(len(ENDS)), np.maximum(count - 1, 0) // 2]
+        enough = count >= _MIN_SAMPLES
+        lengths[enough] = middle[enough]
+        sigmas[enough] = self._config.limb_sigma * lengths[enough]
         return lengths, sigmas
 
     def learn(self, points_m: Float, covariance_m2: Float, seen: Bool) -> None:

@@ -19,7 +19,7 @@ from services.fusion.timing import Tracks
 from services.fusion.triangulation import Triangulated, triangulate
 from services.fusion.views import Sighting, Views
 
-_TRACK_DEPTH = 48
+_TRACK_DEPTH = 32
 _TRUNK = list(coco.TRUNK)
 _REACH_M = 1.3
 """No joint is further from the body's centre."""
@@ -162,8 +162,13 @@ class Pupil:
         for _ in range(min(end - self._smoother.last, config.smoothing.knots)):
             self._smoother.extend()
         held = int(np.floor(self._filters.newest.t_s / config.frame_s))
+        ahead = self._filters.newest.copy()
         for index in range(max(held, self._smoother.first), self._smoother.last + 1):
-            ahead = self._filters.at(index * config.frame_s)
+            if index == held:
+                past = self._filters.at(index * config.frame_s)
+                self._smoother.foresee(index, past.state[:, :3], past.alive)
+                continue
+            ahead.advance(index * config.frame_s, config.filter)
             self._smoother.foresee(index, ahead.state[:, :3], ahead.alive)
 
     def _pose(
@@ -185,7 +190,10 @@ class Pupil:
 
     def _doubt_sides(self, camera: int, t_s: float, swapped: Bool) -> None:
         """If most cameras keep having to be repaired, it is the estimate whose left is right."""
+        before = self._swapped[camera].any()
         self._swapped[camera] = swapped
+        if not (before or swapped.any()):
+            return
         fresh = [c for c in range(len(self._views)) if self._tracks.newest_s(c) >= t_s - _STALE_S]
         most = 2 * self._swapped[fresh].sum(axis=0) > len(fresh)
         self._doubted_s = np.where(most, np.minimum(self._doubted_s, t_s), np.inf)
@@ -201,19 +209,19 @@ class Pupil:
     def _seed(self, t_s: float, joints: Triangulated, which: Counts) -> None:
         doubt = np.eye(3) * _SEED_SIGMA_M**2
         self._filters.seed(t_s, tuple(Seed(int(j), joints.points_m[j], joints.covariance_m2[j] + doubt) for j in which))
+        since_s = self._second_newest()
         for joint in which:
             agreed = ((int(joints.inliers[joint]) >> np.arange(len(self._views))) & 1).astype(np.bool_)
-            self._smoother.restart(int(joint), self._second_newest(int(joint)), joints.points_m[joint])
+            self._smoother.restart(int(joint), float(since_s[joint]), joints.points_m[joint])
             self._agreed_s[agreed, joint] = np.maximum(self._agreed_s[agreed, joint], t_s)
 
     def _give_up(self, t_s: float, config: FusionConfig) -> None:
         longest = config.filter.view_memory_s + config.filter.guess_s
-        old = [Seed(joint, None, None) for joint in range(coco.COUNT) if t_s - self._second_newest(joint) > longest]
-        alive = self._filters.newest.alive
-        gone = tuple(seed for seed in old if alive[seed.joint])
-        if gone:
-            self._filters.seed(t_s, gone)
+        gone = self._filters.newest.alive & (t_s - self._second_newest() > longest)
+        if gone.any():
+            self._filters.seed(t_s, tuple(Seed(int(joint), None, None) for joint in np.flatnonzero(gone)))
 
-    def _second_newest(self, joint: int) -> float:
-        """When the second of two views last agreed with a joint."""
-        return float(np.sort(self._agreed_s[:, joint])[-2])
+    def _second_newest(self) -> Float:
+        """(17,) when the second of two views last agreed with a joint."""
+        newest: Float = np.sort(self._agreed_s, axis=0)[-2]
+        return newest

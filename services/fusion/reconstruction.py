@@ -12,6 +12,9 @@ from services.fusion.config import FusionConfig
 from services.fusion.pupil import Pupil
 from services.fusion.views import Sighting, Views
 
+_CHECK_EVERY = 2
+"""Ticks between two triangulations of all joints."""
+
 
 class Reconstruction:
     """The state of one epoch.
@@ -32,6 +35,7 @@ class Reconstruction:
         self._candidates = Candidates(len(views))
         self._familiar = familiar
         self._challenged_s = np.inf
+        self._ticks = 0
 
     @property
     def familiar(self) -> Familiar:
@@ -53,7 +57,9 @@ class Reconstruction:
         if not np.isfinite(now):
             return
         if self.pupil is not None:
-            self.pupil.check(config)
+            self._ticks += 1
+            if self._ticks % _CHECK_EVERY == 0:
+                self.pupil.check(config)
             if self.pupil.lost:
                 self._familiar, self.pupil = self.pupil.familiar, None
             else:

@@ -33,24 +33,19 @@ class Tracks:
 
     def add(self, slot: int, sighting: Sighting) -> bool:
         """Insert at its place in time; False if it is a repetition, or older than all of a full track."""
-        count, depth = int(self.counts[slot]), self.times_s.shape[1]
-        times = self.times_s[slot, :count]
-        place = int(np.searchsorted(times, sighting.t_s))
-        if any(abs(times[i] - sighting.t_s) < SAME_INSTANT_S for i in (place - 1, place) if 0 <= i < count):
-            return False
-        if count == depth:
-            if place == 0:
-                return False
-            place -= 1
-            self._move(slot, slice(1, place + 1), slice(0, place))
-        else:
-            self._move(slot, slice(place, count), slice(place + 1, count + 1))
-            self.counts[slot] = count + 1
-        self.times_s[slot, place] = sighting.t_s
-        self.points_px[slot, place] = sighting.points_px
-        self.sigma_px[slot, place] = sighting.sigma_px
-        self.usable[slot, place] = sighting.usable
-        return True
+        inserted: bool = insert(
+            self.times_s[slot],
+            self.counts,
+            slot,
+            self.points_px[slot],
+            self.sigma_px[slot],
+            self.usable[slot],
+            sighting.t_s,
+            sighting.points_px,
+            sighting.sigma_px,
+            sighting.usable,
+        )
+        return inserted
 
     def clear(self, slot: int) -> None:
         """Forget a slot's sightings."""
@@ -83,9 +78,39 @@ class Tracks:
             config.velocity_memory_s,
         )
 
-    def _move(self, slot: int, source: slice, target: slice) -> None:
-        for array in (self.times_s, self.points_px, self.sigma_px, self.usable):
-            array[slot, target] = array[slot, source].copy()
+
+@compiled
+def insert(
+    times: Float,
+    counts: Counts,
+    slot: int,
+    points: Float,
+    sigma: Float,
+    usable: Bool,
+    t_s: float,
+    new_points: Float,
+    new_sigma: Float,
+    new_usable: Bool,
+) -> bool:
+    """The kernel of `Tracks.add`: arrays of one slot, in place."""
+    count, depth = counts[slot], times.shape[0]
+    place = count
+    while place > 0 and times[place - 1] > t_s:
+        place -= 1
+    if (place > 0 and t_s - times[place - 1] < SAME_INSTANT_S) or (place < count and times[place] - t_s < SAME_INSTANT_S):
+        return False
+    if count == depth:
+        if place == 0:
+            return False
+        place -= 1
+        for i in range(place):
+            times[i], points[i], sigma[i], usable[i] = times[i + 1], points[i + 1], sigma[i + 1], usable[i + 1]
+    else:
+        for i in range(count, place, -1):
+            times[i], points[i], sigma[i], usable[i] = times[i - 1], points[i - 1], sigma[i - 1], usable[i - 1]
+        counts[slot] = count + 1
+    times[place], points[place], sigma[place], usable[place] = t_s, new_points, new_sigma, new_usable
+    return True
 
 
 @compiled

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from models.arrays import Bool, Float
+from models.arrays import Bool, Float, Float32
 from models.camera.rig import Rig
 from models.messages.observation import Observation, Person
 from services.fusion.compiled import compiled
@@ -84,14 +84,22 @@ def sightings(observation: Observation, views: Views, config: SightingConfig) ->
 
 
 def _sighting(person: Person, camera: int, t_s: float, views: Views, config: SightingConfig) -> Sighting:
-    score = person.score.astype(np.float64)
-    doubt = np.maximum(1.0, config.full_score / np.maximum(score, 1e-3))
-    sigma = np.hypot(np.abs(person.sigma_px.astype(np.float64)), config.sigma_floor_px) * doubt
-    points = undistort(
-        person.keypoints_px.astype(np.float64), views.matrices_px[camera], views.inverses[camera], views.distortions[camera]
-    )
-    usable = (score >= config.min_score) & np.isfinite(points).all(axis=1) & np.isfinite(sigma)
+    calibration = views.matrices_px[camera], views.inverses[camera], views.distortions[camera]
+    points = undistort(person.keypoints_px.astype(np.float64), *calibration)
+    sigma, usable = judge(person.sigma_px, person.score, points, config.sigma_floor_px, config.min_score, config.full_score)
     return Sighting(camera, person.track, t_s, points, sigma, usable)
+
+
+@compiled
+def judge(
+    sigma_px: Float32, score: Float32, points_px: Float, floor_px: float, min_score: float, full_score: float
+) -> tuple[Float, Bool]:
+    """Sigma of each point, grown for what the network does not know and for its doubts, and whether to use the point."""
+    sigma, usable = np.empty(score.shape[0]), np.empty(score.shape[0], np.bool_)
+    for j in range(score.shape[0]):
+        sigma[j] = np.sqrt(float(sigma_px[j]) ** 2 + floor_px**2) * max(1.0, full_score / max(float(score[j]), 1e-3))
+        usable[j] = score[j] >= min_score and np.isfinite(points_px[j, 0]) and np.isfinite(points_px[j, 1])
+    return sigma, usable
 
 
 @compiled

@@ -13,6 +13,8 @@ _BAND = 12
 """Sub-diagonals and the diagonal."""
 _LEAST_SHARE = 0.02
 """No difference, however large, loses more of its penalty."""
+_NEGLIGIBLE = 0.03
+"""A point of less than this share (squared) of its weight is 17 sigmas off and left out."""
 _OPEN_SHARE = 0.03
 """Penalty of differences beyond the newest picture. Extrapolation makes them look small, which is no evidence that they are."""
 
@@ -27,13 +29,53 @@ def _cubic(u: float, weights: Float) -> None:
 
 
 @compiled
-def _add_block(band: Float, row: int, column: int, block: Float, factor: float) -> None:
-    """Add factor * block (3, 3) for positions row >= column to the lower band."""
+def _add_picture(
+    band: Float,
+    right: Float,
+    x: Float,
+    place: float,
+    projection: Float,
+    pixel: Float,
+    variance: float,
+    scale2: float,
+    scratch: Float,
+) -> None:
+    """Linearised robust data term of one point of one picture, taken `place` knots into the window."""
+    weights, point, block, pull = scratch[0], scratch[1], scratch[2:5], scratch[5]
+    base = min(max(int(place) - 1, 0), x.shape[0] - 4)
+    _cubic(place - base, weights)
     for k in range(3):
+        point[k] = weights[0] * x[base, k] + weights[1] * x[base + 1, k] + weights[2] * x[base + 2, k] + weights[3] * x[base + 3, k]
+    w = projection[2, 0] * point[0] + projection[2, 1] * point[1] + projection[2, 2] * point[2] + projection[2, 3]
+    if w <= 1e-6:
+        return
+    u = (projection[0, 0] * point[0] + projection[0, 1] * point[1] + projection[0, 2] * point[2] + projection[0, 3]) / w
+    v = (projection[1, 0] * point[0] + projection[1, 1] * point[1] + projection[1, 2] * point[2] + projection[1, 3]) / w
+    du, dv = pixel[0] - u, pixel[1] - v
+    share = scale2 / ((du * du + dv * dv) / variance + scale2)
+    weight = share * share / variance
+    if share < _NEGLIGIBLE:
+        return
+    for k in range(3):
+        along_u = (projection[0, k] - u * projection[2, k]) / w
+        along_v = (projection[1, k] - v * projection[2, k]) / w
+        pull[k] = weight * (along_u * du + along_v * dv)
         for m in range(3):
-            i, j = 3 * row + k, 3 * column + m
-            if i >= j:
-                band[i, i - j] += factor * block[k, m]
+            block[k, m] = weight * (
+                along_u * (projection[0, m] - u * projection[2, m]) / w + along_v * (projection[1, m] - v * projection[2, m]) / w
+            )
+            pull[k] += block[k, m] * point[m]
+    for a in range(4):
+        row = 3 * (base + a)
+        for k in range(3):
+            right[row + k] += weights[a] * pull[k]
+            for m in range(k + 1):
+                band[row + k, k - m] += weights[a] * weights[a] * block[k, m]
+        for b in range(a):
+            factor = weights[a] * weights[b]
+            for k in range(3):
+                for m in range(3):
+                    band[row + k, 3 * (a - b) + k - m] += factor * block[k, m]
 
 
 @compiled
@@ -51,43 +93,14 @@ def _add_pictures(
     usable: Bool,
     scale2: float,
     joint: int,
+    scratch: Float,
 ) -> None:
-    """Linearised robust data terms of one camera."""
-    knots = x.shape[0]
-    weights, point, jacobian, block, pull = np.empty(4), np.empty(3), np.empty((2, 3)), np.empty((3, 3)), np.empty(3)
+    """Data terms of one joint in one camera's pictures."""
     for i in range(count):
         place = (times[i] - start) / frame
-        if not usable[i, joint] or place < 0.0 or place > knots - 1:
-            continue
-        base = min(max(int(place) - 1, 0), knots - 4)
-        _cubic(place - base, weights)
-        for k in range(3):
-            point[k] = (
-                weights[0] * x[base, k] + weights[1] * x[base + 1, k] + weights[2] * x[base + 2, k] + weights[3] * x[base + 3, k]
-            )
-        w = projection[2, 0] * point[0] + projection[2, 1] * point[1] + projection[2, 2] * point[2] + projection[2, 3]
-        if w <= 1e-6:
-            continue
-        u = (projection[0, 0] * point[0] + projection[0, 1] * point[1] + projection[0, 2] * point[2] + projection[0, 3]) / w
-        v = (projection[1, 0] * point[0] + projection[1, 1] * point[1] + projection[1, 2] * point[2] + projection[1, 3]) / w
-        du, dv = pixels[i, joint, 0] - u, pixels[i, joint, 1] - v
-        variance = sigma[i, joint] * sigma[i, joint]
-        r2 = (du * du + dv * dv) / variance
-        weight = (scale2 / (r2 + scale2)) ** 2 / variance
-        for k in range(3):
-            jacobian[0, k] = (projection[0, k] - u * projection[2, k]) / w
-            jacobian[1, k] = (projection[1, k] - v * projection[2, k]) / w
-        for k in range(3):
-            pull[k] = weight * (jacobian[0, k] * du + jacobian[1, k] * dv)
-            for m in range(3):
-                block[k, m] = weight * (jacobian[0, k] * jacobian[0, m] + jacobian[1, k] * jacobian[1, m])
-        for k in range(3):
-            pull[k] += block[k, 0] * point[0] + block[k, 1] * point[1] + block[k, 2] * point[2]
-        for a in range(4):
-            for k in range(3):
-                right[3 * (base + a) + k] += weights[a] * pull[k]
-            for b in range(a + 1):
-                _add_block(band, base + a, base + b, block, weights[a] * weights[b])
+        if usable[i, joint] and 0.0 <= place <= x.shape[0] - 1:
+            variance = sigma[i, joint] * sigma[i, joint]
+            _add_picture(band, right, x, place, projection, pixels[i, joint], variance, scale2, scratch)
 
 
 @compiled
@@ -118,7 +131,7 @@ def _add_limb(
     band: Float, right: Float, x: Float, other: Float, known: Bool, length: float, sigma: float, spread: Float, scale2: float
 ) -> None:
     """Pull every position onto the limb's length from its other end, along the limb only."""
-    direction, block = np.empty(3), np.empty((3, 3))
+    direction = np.empty(3)
     for knot in range(x.shape[0]):
         if not known[knot]:
             continue
@@ -143,8 +156,8 @@ def _add_limb(
         for k in range(3):
             right[3 * knot + k] += direction[k] * along / variance
             for m in range(3):
-                block[k, m] = direction[k] * direction[m] / variance
-        _add_block(band, knot, knot, block, 1.0)
+                if m <= k:
+                    band[3 * knot + k, k - m] += direction[k] * direction[m] / variance
 
 
 @compiled
@@ -160,15 +173,15 @@ def _factor(band: Float) -> None:
 
 
 @compiled
-def _solve(band: Float, right: Float) -> None:
-    """Solve in place with a factored band."""
+def _solve(band: Float, right: Float, first: int) -> None:
+    """Solve in place with a factored band, for a right side that is zero before `first`; what comes before it is left out."""
     size, width = band.shape
-    for i in range(size):
+    for i in range(first, size):
         total = right[i]
-        for k in range(max(0, i - width + 1), i):
+        for k in range(max(first, i - width + 1), i):
             total -= band[i, i - k] * right[k]
         right[i] = total / band[i, 0]
-    for i in range(size - 1, -1, -1):
+    for i in range(size - 1, first - 1, -1):
         total = right[i]
         for k in range(i + 1, min(size, i + width)):
             total -= band[k, k - i] * right[k]
@@ -266,7 +279,7 @@ def smooth_window(
     joints, knots, reads = positions.shape[0], positions.shape[1], instants.shape[0]
     points, covariance = np.zeros((reads, joints, 3)), np.zeros((reads, joints, 3, 3))
     views = np.zeros((reads, joints), np.uint32)
-    band, right = np.empty((3 * knots, _BAND)), np.empty(3 * knots)
+    band, right, scratch = np.empty((3 * knots, _BAND)), np.empty(3 * knots), np.empty((6, 4))
     for j in range(joints):
         if not known[j].any():
             continue
@@ -276,7 +289,7 @@ def smooth_window(
             right[:] = 0.0
             for camera in range(projections.shape[0]):
                 pictures = times[camera], counts[camera], pixels[camera], sigma[camera], usable[camera]
-                _add_pictures(band, right, x, start, frame, projections[camera], *pictures, scale2, j)
+                _add_pictures(band, right, x, start, frame, projections[camera], *pictures, scale2, j, scratch)
             _add_differences(band, x, order, strength[j], freedom, held)
             _add_differences(band, x, 2, bend[j], np.inf, held)
             for limb in range(ends.shape[0]):
@@ -290,7 +303,7 @@ def smooth_window(
                 band[i, 0] += 1.0
                 right[i] += x[i // 3, i % 3]
             _factor(band)
-            _solve(band, right)
+            _solve(band, right, 0)
             for i in range(3 * knots):
                 x[i // 3, i % 3] = right[i]
         known[j] = True
@@ -300,9 +313,9 @@ def smooth_window(
             # The later of the two positions around the instant is the less certain one.
             knot = min(int(np.ceil(place - 1e-6)), knots - 1)
             for k in range(3):
-                right[:] = 0.0
+                right[3 * knot :] = 0.0
                 right[3 * knot + k] = 1.0
-                _solve(band, right)
+                _solve(band, right, 3 * knot)
                 for m in range(3):
                     covariance[read, j, m, k] = right[3 * knot + m]
             views[read, j] = _agreeing(
