@@ -122,9 +122,11 @@ def _open_epoch(state: FusionState, epoch: int, t_s: float) -> None:
 
 
 def _tick(state: FusionState, t_ns: int, config: FusionConfig) -> FusionOutput:
-    if not state.epochs or t_ns <= state.tick_ns:
+    if t_ns <= state.tick_ns:
         return FusionOutput()
     state.tick_ns = t_ns
+    if not state.epochs:
+        return FusionOutput(searching=dict.fromkeys(state.views.index, True))
     t_s = t_ns * 1e-9
     for reconstruction in state.epochs:
         reconstruction.tick(config)

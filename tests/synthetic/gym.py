@@ -52,7 +52,8 @@ class Gym:
 
     Attributes:
         rates_hz: inferences a second of each camera, repeated over the cameras.
-        noise_px: sigma of a keypoint; it is also what the network reports.
+        noise_px: sigma of a keypoint.
+        reported_px: sigma that the network reports.
         tail: share of keypoints whose error is four times as large.
         occlusion: share of time in which a joint is hidden from a camera: 6 times the noise, score 0.25.
         swap: share of time in which left and right are exchanged (body, arms or legs).
@@ -68,6 +69,7 @@ class Gym:
     seconds: float = 6.0
     rates_hz: tuple[float, ...] = (15.0, 12.0, 10.0, 14.0)
     noise_px: float = 2.5
+    reported_px: float = 2.5
     tail: float = 0.05
     occlusion: float = 0.08
     swap: float = 0.04
@@ -109,7 +111,7 @@ class Gym:
                 for number, (bystander, cameras) in enumerate(self.bystanders):
                     if camera in cameras:
                         plain = self._see(bystander, camera, t, random)
-                        persons.append(_person(plain, np.full(coco.COUNT, self.noise_px), np.full(coco.COUNT, 0.9), 10 + number))
+                        persons.append(_person(plain, np.full(coco.COUNT, self.reported_px), np.full(coco.COUNT, 0.9), 10 + number))
                 arrival = t + self.latency_s * random.uniform(0.67, 1.33)
                 name = self.rig.names[camera]
                 yield arrival, Observation(name, 0, sequence, sequence, t_ns, t_ns, "synthetic", tuple(persons))
@@ -153,7 +155,7 @@ class _Faults:
             self._place = self._random.uniform((300, 150), (980, 600))
 
     def apply(self, exact: Float, track: int, random: np.random.Generator) -> Seen:
-        sigma = np.full(coco.COUNT, self._gym.noise_px)
+        sigma = np.full(coco.COUNT, self._gym.reported_px)
         score = np.full(coco.COUNT, 0.9)
         points = exact.copy()
         points[self._hidden] += random.normal(0.0, 6 * self._gym.noise_px, (int(self._hidden.sum()), 2))
