@@ -1,4 +1,4 @@
-import { Freshness, TOO_LATE_MS, underWayMs } from './connection/freshness';
+import { Freshness, STALE_AFTER_MS, TOO_LATE_MS, underWayMs } from './connection/freshness';
 import { Link } from './connection/link';
 import { phaseOf, type Phase } from './connection/phase';
 import { complete, showsSomebody, standing, unsure, type Pose } from './figure/pose';
@@ -20,7 +20,7 @@ export class Viewer {
   private underWay = 0;
   private pose: Pose = standing();
   private hasFigure = false;
-  private dropping = false;
+  private droppedMs = -Infinity;
   private delayMs: number | null = null;
   private figures = 0;
   private counted = { figures: 0, atMs: performance.now() };
@@ -78,8 +78,8 @@ export class Viewer {
   /** A frame waits to be drawn, in the place of an older one, unless it was under way for too long. */
   private consider(frame: MotionFrame, nowMs: number): void {
     const underWay = underWayMs(frame, this.link.clock.boxMs(nowMs));
-    this.dropping = underWay !== null && underWay > TOO_LATE_MS;
-    if (this.dropping) {
+    if (underWay !== null && underWay > TOO_LATE_MS) {
+      this.droppedMs = nowMs;
       this.room.droppedLate += 1;
       return;
     }
@@ -117,7 +117,7 @@ export class Viewer {
   private changed(): void {
     this.underWay = 0;
     this.waiting = null;
-    this.dropping = false;
+    this.droppedMs = -Infinity;
     if (!this.link.connected) this.room.status = null; // what was known of the cameras is no longer
     this.freshness.reset();
     this.hasFigure = false;
@@ -133,7 +133,7 @@ export class Viewer {
       failures: this.link.failures,
       hasFigure: this.hasFigure,
       stale: this.freshness.isStale(nowMs),
-      dropping: this.dropping,
+      dropping: nowMs - this.droppedMs < STALE_AFTER_MS,
       pupil: this.room.status?.pupil ?? 'unknown',
     });
     if (phase !== 'live' && this.stage.colouredShare > 0) this.stage.show(unsure(this.pose));

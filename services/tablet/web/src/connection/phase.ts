@@ -14,7 +14,7 @@ export interface PhaseInputs {
   /** A figure with at least one seen joint was drawn on this connection. */
   hasFigure: boolean;
   stale: boolean;
-  /** Frames were dropped as too late since the last one that was drawn. */
+  /** Frames were dropped as too late, just now. */
   dropping: boolean;
   pupil: 'unknown' | 'searching' | 'found';
 }

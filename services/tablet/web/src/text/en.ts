@@ -49,6 +49,7 @@ const number = (value: number | null, digits = 0): string => (value === null ? '
 
 export const text = {
   product: 'KineBox',
+  side: 'State of the room',
   phases,
   staleFor: (s: number): string => `No new movement for ${seconds(s)}`,
 

@@ -1,0 +1,233 @@
+"""The page in Chromium, on the real server: the figure moves, and nothing that is not known looks fine."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from models.arrays import Float
+from models.messages.motion import JointState
+from models.skeleton import coco
+from services.tablet import process
+from tests.browser.room import CAMERAS, Room, with_scene
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+AXE = process.PAGE.parent / "node_modules" / "axe-core" / "axe.min.js"
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What the page tells of itself in `data-` attributes."""
+
+    page: Page
+
+    def number(self, key: str) -> float:
+        return float(self.page.locator(".page").get_attribute(f"data-{key}") or "nan")
+
+    def wait_for_phase(self, phase: str) -> None:
+        self.page.locator(f".page[data-phase={phase}]").wait_for()
+
+    def wait_until(self, condition: str) -> None:
+        """Wait for a condition on `d`, the root's data set."""
+        self.page.wait_for_function(f"() => {{ const d = document.querySelector('.page').dataset; return {condition}; }}")
+
+    def picture(self) -> Float:
+        """(height, width, 3) what the canvas shows, 0 to 1, without the words above it."""
+        self._show_words(False)
+        png = self.page.locator("canvas").screenshot()
+        self._show_words(True)
+        return np.asarray(cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR), np.float64) / 255
+
+    def _show_words(self, visible: bool) -> None:
+        # Through the object model: the page's security policy refuses a style sheet from outside.
+        change = "for (const e of document.querySelectorAll('.messages, .legend, .reset')) e.style.visibility = "
+        self.page.evaluate(change + ("''" if visible else "'hidden'"))
+
+    def coloured_pixels(self) -> int:
+        """Pixels that nobody would call grey."""
+        picture = self.picture()
+        return int((np.ptp(picture, axis=-1) > 0.25).sum())
+
+
+def open_live(page: Page, room: Room) -> Shown:
+    shown = Shown(page)
+    page.goto(room.page)
+    shown.wait_for_phase("live")
+    shown.wait_until("Number(d.figures) >= 3 && Number(d.coloured) > 0")
+    return shown
+
+
+def test_the_figure_moves_while_the_pupil_does(page: Page, room: Room) -> None:
+    shown = open_live(page, room)
+    before, figures = shown.picture(), shown.number("figures")
+    shown.wait_until(f"Number(d.figures) >= {figures + 5}")
+    assert (np.abs(shown.picture() - before).max(axis=-1) > 0.2).sum() > 300
+    assert shown.coloured_pixels() > 1000
+
+
+def test_nothing_is_drawn_while_nothing_changes(page: Page, room: Room) -> None:
+    with_scene(room, publishing=False)
+    page.goto(room.page)
+    shown = Shown(page)
+    shown.wait_for_phase("waiting")
+    drawn = shown.number("drawn")
+    page.wait_for_timeout(1500)
+    assert shown.number("drawn") - drawn <= 2
+
+
+def test_dragging_turns_the_view_and_the_button_brings_it_back(page: Page, room: Room) -> None:
+    with_scene(room, speed=0.0)
+    shown = open_live(page, room)
+    first = shown.number("azimuth")
+    box = page.locator("canvas").bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 120, y, steps=4)
+    page.mouse.up()
+    shown.wait_until(f"Math.abs(Number(d.azimuth) - {first}) > 20")
+    page.get_by_role("button", name="Reset view").click()
+    shown.wait_until(f"Math.abs(Number(d.azimuth) - {first}) < 1")
+
+
+def test_the_view_turns_by_key(page: Page, room: Room) -> None:
+    with_scene(room, speed=0.0)
+    shown = open_live(page, room)
+    first = shown.number("azimuth")
+    page.get_by_role("application").focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowRight")
+    shown.wait_until(f"Math.abs(Number(d.azimuth) - {first} - 20) < 1")
+    page.keyboard.press("r")
+    shown.wait_until(f"Math.abs(Number(d.azimuth) - {first}) < 1")
+
+
+def test_server_gone_is_grey_with_words_and_server_back_is_live(page: Page, room: Room) -> None:
+    shown = open_live(page, room)
+    room.stop_server()
+    shown.wait_for_phase("offline")
+    expect(page.get_by_text("No connection to the box")).to_be_visible()
+    assert shown.number("coloured") == 0
+    assert shown.coloured_pixels() < 50
+    expect(page.locator("[data-camera]")).to_have_count(0)
+    expect(page.get_by_text("Good")).to_have_count(0)
+    room.start_server()
+    shown.wait_for_phase("live")
+    shown.wait_until("Number(d.coloured) > 0")
+
+
+def test_motion_that_stops_becomes_grey_and_says_for_how_long(page: Page, room: Room) -> None:
+    shown = open_live(page, room)
+    with_scene(room, publishing=False)
+    shown.wait_for_phase("stale")
+    expect(page.get_by_text("No new movement for")).to_be_visible()
+    shown.wait_until("Number(d.coloured) === 0")
+    assert shown.coloured_pixels() < 50
+    with_scene(room, publishing=True)
+    shown.wait_for_phase("live")
+
+
+def test_a_pupil_who_leaves_is_waited_for(page: Page, room: Room) -> None:
+    shown = open_live(page, room)
+    with_scene(room, pupil="searching", states=dict.fromkeys(range(coco.COUNT), JointState.UNKNOWN))
+    shown.wait_for_phase("waiting")
+    expect(page.get_by_text("Nobody in view")).to_be_visible()
+    assert shown.number("coloured") == 0
+
+
+def test_guesses_alone_are_never_live(page: Page, room: Room) -> None:
+    shown = open_live(page, room)
+    with_scene(room, states=dict.fromkeys(range(coco.COUNT), JointState.GUESSED))
+    shown.wait_for_phase("stale")
+    assert shown.coloured_pixels() < 50
+
+
+def test_a_joint_that_is_not_sure_is_grey_on_a_coloured_figure(page: Page, room: Room) -> None:
+    with_scene(room, speed=0.0)
+    shown = open_live(page, room)
+    everything = shown.coloured_pixels()
+    with_scene(room, states={coco.INDEX["left_knee"]: JointState.GUESSED, coco.INDEX["right_ankle"]: JointState.UNKNOWN})
+    shown.wait_until("Number(d.coloured) < 1")
+    assert 0 < shown.coloured_pixels() < 0.9 * everything
+
+
+def test_a_lost_camera_is_named_and_the_lesson_goes_on(page: Page, room: Room) -> None:
+    open_live(page, room)
+    expect(page.locator("[data-state=ok]")).to_have_count(4)
+    with_scene(room, lost=frozenset({CAMERAS[2]}))
+    expect(page.get_by_text("Camera 3 lost \N{EN DASH} the lesson goes on with three")).to_be_visible()
+    lost = page.locator(f"[data-camera={CAMERAS[2]}]")
+    expect(lost).to_have_attribute("data-state", "lost")
+    expect(lost).not_to_contain_text("/s")
+    with_scene(room, lost=frozenset())
+    expect(page.locator("[data-state=ok]")).to_have_count(4)
+    expect(page.get_by_text("the lesson goes on")).to_have_count(0)
+
+
+def test_the_rates_that_run_are_on_the_page(page: Page, room: Room) -> None:
+    with_scene(room, fresh_hz=5.9)
+    open_live(page, room)
+    expect(page.get_by_text("All cameras are slow \N{EN DASH} fast movement may be missed")).to_be_visible()
+    expect(page.locator(f"[data-camera={CAMERAS[0]}]")).to_contain_text("6/s")
+    page.get_by_role("button", name="Details").click()
+    details = page.get_by_role("complementary")
+    expect(details).to_contain_text("5.9 / 15.0")
+    expect(details).to_contain_text("thunder")
+    page.keyboard.press("Escape")
+    expect(details).to_have_count(0)
+    expect(page.get_by_role("button", name="Details")).to_be_focused()
+
+
+def test_a_phone_shows_figure_and_cameras_without_sideways_scrolling(browser: Browser, room: Room) -> None:
+    page = browser.new_page(viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True)
+    shown = open_live(page, room)
+    assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
+    canvas = page.locator("canvas").bounding_box()
+    assert canvas is not None
+    assert canvas["height"] > 300
+    last = page.locator("[data-camera]").last.bounding_box()
+    assert last is not None
+    assert last["y"] + last["height"] <= 844, "all cameras are in view without scrolling"
+    assert shown.coloured_pixels() > 500
+    page.close()
+
+
+@pytest.mark.parametrize("phase", ["live", "lost", "offline", "details"])
+def test_the_page_is_accessible(page: Page, room: Room, phase: str) -> None:
+    shown = open_live(page, room)
+    if phase == "lost":
+        with_scene(room, lost=frozenset({CAMERAS[1]}), fresh_hz=5.0)
+        page.get_by_text("Camera 2 lost \N{EN DASH} the lesson goes on").wait_for()
+    elif phase == "offline":
+        room.stop_server()
+        shown.wait_for_phase("offline")
+    elif phase == "details":
+        page.get_by_role("button", name="Details").click()
+    # Not as a script element, which the page's security policy rightly refuses.
+    page.evaluate(AXE.read_text(encoding="utf-8"))
+    found = page.evaluate("axe.run({runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'best-practice']})")
+    assert [(violation["id"], [node["html"] for node in violation["nodes"]]) for violation in found["violations"]] == []
+
+
+def test_the_page_asks_no_other_host(page: Page, room: Room) -> None:
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    open_live(page, room)
+    assert asked
+    assert [url for url in asked if not url.startswith(room.page)] == []
+
+
+def test_reduced_motion_is_respected(browser: Browser, room: Room) -> None:
+    with_scene(room, speed=0.0)
+    page = browser.new_page(viewport={"width": 640, "height": 400}, reduced_motion="reduce")
+    shown = open_live(page, room)
+    first = shown.number("azimuth")
+    page.get_by_role("application").focus()
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("r")
+    shown.wait_until(f"Math.abs(Number(d.azimuth) - {first}) < 0.2")
+    page.close()
