@@ -53,4 +53,6 @@ def require_free(host: str, port: int, what: str, key: str) -> None:
 
 def _host_and_port(endpoint: str) -> tuple[str, int]:
     host, _, port = endpoint.removeprefix("tcp/").rpartition(":")
+    if not 0 < int(port) < 2**16:
+        raise UserError(f"port of the bus: {port} is no port (1 to 65535); change bus.endpoint in the site file")
     return host.strip("[]"), int(port)
