@@ -167,18 +167,18 @@ def observe(
 
 
 def _across_seam(state: EdgeState, frame: Frame) -> EdgeState:
-    """The state for a frame's epoch: at a seam everyone is forgotten."""
+    """The state for a frame's epoch."""
     if state.epoch == frame.epoch:
         return state
     t_seam_ns = 0 if state.epoch is None else frame.t_mid_ns
-    return replace(state, epoch=frame.epoch, t_seam_ns=t_seam_ns, tracks=state.tracks.forgotten())
+    return replace(state, epoch=frame.epoch, t_seam_ns=t_seam_ns, tracks=state.tracks.across_seam(frame.t_mid_ns))
 
 
 def _of_this_epoch(control: ViewControl, t_seam_ns: int) -> ViewControl:
-    """The plan without a prediction from before the seam: the person was elsewhere then."""
+    """The plan without a prediction from before the seam: the person moved differently then."""
     if control.prediction is None or control.prediction.t_ns >= t_seam_ns:
         return control
-    return msgspec.structs.replace(control, search=True, prediction=None)
+    return msgspec.structs.replace(control, prediction=None)
 
 
 def _detect(pictures: _Pictures, frame: Frame, networks: Networks, stages: Stages) -> Float:

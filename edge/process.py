@@ -146,7 +146,9 @@ class EdgeLoop:
         if progress.t_grabbed_ns is not None:
             meter.skipped += missed_turns(frame.t_mid_ns, progress.t_grabbed_ns, skipped, control)
         progress.t_grabbed_ns = frame.t_mid_ns
-        if is_due(frame.t_mid_ns, progress.t_inferred_ns, control):
+        # An epoch's first picture is due for every camera at work: fusion has nothing of it yet.
+        seam = control.rate_hz > 0 and progress.state.epoch is not None and frame.epoch != progress.state.epoch
+        if seam or is_due(frame.t_mid_ns, progress.t_inferred_ns, control):
             progress.t_inferred_ns = frame.t_mid_ns
             meter.waited(now_ns - frame.t_mid_ns)
             self._infer(frame, control)

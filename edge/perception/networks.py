@@ -1,19 +1,13 @@
-"""Loads a converted network from the data folder and makes it callable.
+"""Loads a converted network from the data folder and makes it callable."""
 
-A network is checked against the hash that the set-up wrote down before anything reads it, so that a file cut off by a full disk
-is one clear line and not a crash in the middle of a lesson.
-"""
-
-import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal, Protocol
 
 import onnxruntime as ort
 
+from edge.perception.network_file import read_network_file
 from models.arrays import Float32, UInt8
-from models.errors import UserError
-from models.networks.installed import FILE_NAME, FOLDER, decode_installed
 
 Provider = Literal["cpu", "openvino"]
 
@@ -40,7 +34,7 @@ def load_network(name: str, data: Path, provider: Provider = "cpu") -> Network:
     Raises:
         UserError: the network is not installed, is damaged, or the provider is not installed.
     """
-    model = _read_checked(name, data / FOLDER)
+    model = read_network_file(name, data)
     if provider == "openvino":
         from edge.perception.openvino_network import OpenVinoNetwork  # noqa: PLC0415 - an optional dependency
 
@@ -76,21 +70,3 @@ class OnnxNetwork:
     def __call__(self, pictures: UInt8) -> Mapping[str, Float32]:
         """See `Network`."""
         return dict(zip(self._outputs, self._session.run(self._outputs, {self._input: pictures}), strict=True))
-
-
-def _read_checked(name: str, folder: Path) -> bytes:
-    try:
-        installed = decode_installed((folder / FILE_NAME).read_bytes())
-    except FileNotFoundError as error:
-        raise UserError(f"network {name}: there are no networks in {folder}; run `make networks`") from error
-    entry = installed.networks.get(name)
-    if entry is None:
-        raise UserError(f"network {name}: not in {folder / FILE_NAME}; run `make networks`")
-    path = folder / entry.file
-    try:
-        model = path.read_bytes()
-    except FileNotFoundError as error:
-        raise UserError(f"network {name}: {path} is missing; run `make networks`") from error
-    if hashlib.sha256(model).hexdigest() != entry.sha256:
-        raise UserError(f"network {name}: {path} is damaged ({len(model)} bytes, not the hash installed); run `make networks`")
-    return model

@@ -89,9 +89,13 @@ class Tracks:
     turn: int = 0
     t_detected_ns: int | None = None
 
-    def forgotten(self) -> "Tracks":
-        """Nobody is known any more (a new epoch); numbers go on."""
-        return Tracks(next_number=self.next_number)
+    def across_seam(self, t_ns: int) -> "Tracks":
+        """What is left in a new epoch: where the pupil was is the first place to look; everyone else is forgotten.
+
+        The place is a guess about where to look and no estimate: a pose there must be as confident as a newcomer's.
+        """
+        pupil = tuple(Track(track.number, track.crop, t_ns) for track in self.people if track.number == self.focus)
+        return Tracks(pupil, next_number=self.next_number, focus=self.focus if pupil else None)
 
 
 def replace_centre(crop: Crop, x_px: float, y_px: float) -> Crop:

@@ -33,8 +33,14 @@ SECOND_NS = 1_000_000_000
 DEADLINE_S = 60.0
 
 
-def moving_spot() -> Video:
-    return video_of([spot_picture(np.array((100 + 4.0 * k, 110)), 6.0, (320, 240)) for k in range(20)])
+def moving_spot(passes: int) -> Video:
+    """A spot that crosses the picture in 20 pictures and back in 20 more, so many times."""
+    there = [spot_picture(np.array((100 + 4.0 * k, 110)), 6.0, (320, 240)) for k in range(20)]
+    return video_of((there + there[::-1]) * passes)
+
+
+def played(context: ProcessContext, passes: int) -> VideoSource:
+    return VideoSource(moving_spot(passes), Schedule(context.start_ns, 0, 30.0), MonotonicClock())
 
 
 def context_for(bus: MemoryBus, data: Path, path: str = "cam01.avi", camera: str = "cam01") -> ProcessContext:
@@ -108,9 +114,7 @@ def running(tmp_path: Path, make_source: Callable[[ProcessContext], VideoSource]
     observations = listener.subscribe(topics.observation("cam01"), keep=100)
     healths = listener.subscribe(topics.health("edge-cam01"), keep=10)
     context = context_for(own, tmp_path)
-    source = (
-        make_source(context) if make_source else VideoSource(moving_spot(), Schedule(context.start_ns, 0, 30.0), MonotonicClock())
-    )
+    source = make_source(context) if make_source else played(context, passes=30)
     loop = EdgeLoop(context, source, Library(FakePose, FakeDetector, "thunder"), MonotonicClock())
     thread = threading.Thread(target=loop.run, daemon=True)
     thread.start()
@@ -134,13 +138,21 @@ def test_before_any_plan_the_camera_is_looked_at_ten_times_a_second_of_its_own_t
 
 
 def test_loops_are_epochs_and_frames_are_stamped_by_the_shared_start(tmp_path: Path) -> None:
-    with running(tmp_path) as box:
+    with running(tmp_path, lambda context: played(context, passes=1)) as box:
         box.plan(30.0)
         last = box.until(lambda observation: observation.epoch >= 1)
     assert last.persons == () or last.persons[0].track > 0
     for observation in box.received:
-        picture = 20 * observation.epoch + observation.frame
+        picture = 40 * observation.epoch + observation.frame
         assert abs(observation.t_mid_ns - box.context.start_ns - picture * SECOND_NS / 30) <= 1
+
+
+def test_the_first_picture_of_an_epoch_is_looked_at_out_of_turn(tmp_path: Path) -> None:
+    with running(tmp_path, lambda context: played(context, passes=1)) as box:
+        box.plan(1.0)
+        box.until(lambda observation: observation.epoch >= 2)
+    first = {observation.epoch: observation.frame for observation in reversed(box.received)}
+    assert first[2] <= 10
 
 
 @pytest.mark.slow
@@ -194,7 +206,7 @@ class Flawed(VideoSource):
 @pytest.mark.slow
 def test_damaged_pictures_are_reported_and_the_others_are_used(tmp_path: Path) -> None:
     def flawed(context: ProcessContext) -> VideoSource:
-        return Flawed(moving_spot(), Schedule(context.start_ns, 0, 30.0), MonotonicClock())
+        return Flawed(moving_spot(passes=30), Schedule(context.start_ns, 0, 30.0), MonotonicClock())
 
     with running(tmp_path, flawed) as box:
         box.plan(30.0)

@@ -163,5 +163,12 @@ def test_when_the_pupil_is_lost_everyone_is_looked_for_again() -> None:
     assert [look.number for look in choose_looks(tracks, FOLLOW, 500 * MS, CONFIG)[1]] == [2, 3]
 
 
-def test_forgetting_keeps_the_numbers_going() -> None:
-    assert detected().forgotten() == Tracks(next_number=2)
+def test_a_seam_leaves_the_pupils_place_as_a_guess_and_forgets_the_others() -> None:
+    assert detected().across_seam(5) == Tracks(next_number=2)
+    followed = seen(detected(), predicting(200, 350, 600, 0), 0, {0: (200, 350)})
+    after = followed.across_seam(7 * MS)
+    (guess,) = after.people
+    assert (guess.number, guess.t_ns, guess.seen, guess.velocity_px_s) == (0, 7 * MS, False, (0.0, 0.0))
+    assert not wants_detection(after, FOLLOW, 7 * MS, CONFIG)
+    empty = seen(after, FOLLOW, 7 * MS, {0: (200, 350)}, score=0.05)
+    assert wants_detection(empty, FOLLOW, 40 * MS, CONFIG)
