@@ -19,7 +19,7 @@ from edge.perception.crop import blended, crop_from_box, crop_from_pose, cut, re
 from edge.perception.detection import load_person_detector
 from edge.perception.networks import Network, load_network
 from edge.perception.pose import find_peaks, vote
-from models.arrays import Bool, Float
+from models.arrays import Bool, Float, Float32
 from models.camera.rig import Rig, decode_rig
 from models.messages.control import PoseNetwork
 from services.calibration.shift import solve_shifts
@@ -54,7 +54,7 @@ def follow(video: Video, network: Network, first_box: Float) -> Seen:
     """Track the pupil through one video, as the edge process does."""
     side_px = network.size_px[0]
     crop = crop_from_box(first_box)
-    rows: list[tuple[Float, ...]] = []
+    rows: list[tuple[Float | Float32, ...]] = []
     for frame in video.frames(30.0):
         # The first picture is looked at twice, so that its crop is as settled as the others'.
         for _ in range(1 if rows else 2):
