@@ -1,0 +1,37 @@
+"""Reads the file of a converted network.
+
+It is checked against the hash that the set-up wrote down before anything interprets it, so that a file cut off by a full disk is
+one clear line and not a crash in the middle of a lesson.
+"""
+
+import hashlib
+from pathlib import Path
+
+from models.errors import UserError
+from models.networks.installed import FILE_NAME, FOLDER, decode_installed
+
+
+def read_network_file(name: str, data: Path) -> bytes:
+    """The network `name` of the manifest, as it was installed in the data folder.
+
+    Raises:
+        UserError: it is not installed, missing or damaged.
+    """
+    folder = data / FOLDER
+    # Make goes by the list alone.
+    remedy = f"delete {folder / FILE_NAME} and run `make networks`"
+    try:
+        installed = decode_installed((folder / FILE_NAME).read_bytes())
+    except FileNotFoundError as error:
+        raise UserError(f"network {name}: there are no networks in {folder}; run `make networks`") from error
+    entry = installed.networks.get(name)
+    if entry is None:
+        raise UserError(f"network {name}: not in {folder / FILE_NAME}; {remedy}")
+    path = folder / entry.file
+    try:
+        model = path.read_bytes()
+    except FileNotFoundError as error:
+        raise UserError(f"network {name}: {path} is missing; {remedy}") from error
+    if hashlib.sha256(model).hexdigest() != entry.sha256:
+        raise UserError(f"network {name}: {path} is damaged ({len(model)} bytes, not the hash installed); {remedy}")
+    return model
