@@ -12,7 +12,6 @@ import os
 import signal
 import statistics
 import subprocess
-import sys
 import threading
 import time
 from collections import defaultdict
@@ -30,7 +29,7 @@ from models.messages import codec, topics
 from models.messages.health import Health
 from models.messages.motion import JointState
 from models.messages.observation import Observation
-from services.bus.zenoh_bus import ZenohBus
+from services.bus.zenoh_bus import open_client
 from services.tablet import motion_frame
 from tests.bench.report import Report
 
@@ -128,7 +127,9 @@ def watch_page(url: str, heard: Heard, stop: threading.Event) -> None:
 
 def watch_bus(site: Site, heard: Heard, stop: threading.Event) -> None:
     """Count fresh frames from the observations, and take the cameras' stage times from their health."""
-    bus = ZenohBus.client(site.bus.endpoint)
+    bus = open_client(site.bus.endpoint, stop)
+    if bus is None:
+        return
     subscription = bus.subscribe(*(topics.observation(camera.name) for camera in site.cameras), topics.ALL_HEALTH, keep=64)
     while not stop.is_set():
         delivery = subscription.receive(0.5)
@@ -231,4 +232,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -17,13 +17,13 @@ from edge.perception.detection import load_person_detector
 from edge.perception.networks import Provider
 from edge.perception.pose import load_pose_network
 from edge.turns import is_due
-from models.arrays import Bool, Float
+from models.arrays import Float, UInt8, UInt32
 from models.camera.rig import Rig
 from models.messages.control import CropPrediction, PoseNetwork, ViewControl
 from models.messages.motion import JointState, Motion
 from models.messages.observation import Observation, Person
 from models.skeleton import coco
-from services.fusion.config import PRESETS
+from services.fusion.config import PRESETS, FusionConfig
 from services.fusion.governor import turn_offset_ns
 from services.fusion.pipeline import FusionOutput, Tick, initial_state, predict_views, step
 from services.fusion.triangulation import triangulate
@@ -49,9 +49,9 @@ class Reconstruction:
 
     live_m: Float
     smooth_m: Float
-    live_states: Bool
-    smooth_states: Bool
-    views: Float
+    live_states: UInt8
+    smooth_states: UInt8
+    views: UInt32
     cpu_s: float
 
 
@@ -107,16 +107,16 @@ def look(
     return events
 
 
-def reconstruct(rig: Rig, events: Sequence[Event], frames: int) -> Reconstruction:
+def reconstruct(rig: Rig, events: Sequence[Event], frames: int, config: FusionConfig = CONFIG) -> Reconstruction:
     """Fuse recorded events."""
-    state = initial_state(rig, CONFIG)
+    state = initial_state(rig, config)
     joints = {kind: np.full((frames, coco.COUNT, 3), np.nan) for kind in ("live", "smooth")}
     states = {kind: np.zeros((frames, coco.COUNT), np.uint8) for kind in ("live", "smooth")}
     views = np.zeros((frames, coco.COUNT), np.uint32)
     outputs: list[FusionOutput] = []
     began = time.thread_time()
     for event in events:
-        state, output = step(state, event, CONFIG)
+        state, output = step(state, event, config)
         outputs.append(output)
     cpu_s = time.thread_time() - began
     motions: list[Motion] = [motion for output in outputs for motion in output.motions]

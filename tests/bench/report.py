@@ -5,7 +5,7 @@ import math
 import platform
 import subprocess
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,13 @@ from typing import Any
 import psutil
 from rich.console import Console
 from rich.table import Table
+
+
+_COMPARISONS: dict[str, Callable[[float, float], bool]] = {
+    ">=": lambda value, bar: value >= bar,
+    "<=": lambda value, bar: value <= bar,
+    "within": lambda value, bar: abs(value) <= bar,
+}
 
 
 @dataclass
@@ -46,7 +53,7 @@ class Report:
         return path
 
     def show(self, bars: Mapping[str, tuple[str, float]]) -> None:
-        """Print the figures; `bars` gives for some of them a bar as (">=" or "<=", value), printed as met or missed."""
+        """Print the figures; `bars` gives for some of them a bar as (">=", "<=" or "within", value), printed as met or missed."""
         table = Table(title=f"{self.target} on {machine()}")
         for column in ("figure", "value", "bar", ""):
             table.add_column(column, justify="right" if column == "value" else "left")
@@ -55,7 +62,7 @@ class Report:
             if bar is None:
                 table.add_row(name, f"{value:.4g}", "", "")
                 continue
-            met = value >= bar[1] if bar[0] == ">=" else value <= bar[1]
+            met = _COMPARISONS[bar[0]](value, bar[1])
             table.add_row(name, f"{value:.4g}", f"{bar[0]} {bar[1]:g}", "met" if met else "[bold]missed[/bold]")
         Console(width=110).print(table)
 
