@@ -14,7 +14,6 @@ import psutil
 from rich.console import Console
 from rich.table import Table
 
-
 _COMPARISONS: dict[str, Callable[[float, float], bool]] = {
     ">=": lambda value, bar: value >= bar,
     "<=": lambda value, bar: value <= bar,
