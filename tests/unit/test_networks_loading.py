@@ -52,7 +52,7 @@ def test_a_network_that_is_not_listed(data: Path) -> None:
 
 def test_a_network_whose_file_is_gone(data: Path) -> None:
     (data / "networks" / "toy.onnx").unlink()
-    with pytest.raises(UserError, match=r"network toy: .*toy\.onnx is missing; run `make networks`"):
+    with pytest.raises(UserError, match=r"network toy: .*toy\.onnx is missing; delete .*installed\.json and run `make networks`"):
         load_network("toy", data)
 
 
