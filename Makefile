@@ -25,7 +25,7 @@ run: setup ## Start KineBox on the built-in footage and print the address of the
 
 test: setup ## Every test: unit, property, golden, real sockets and processes, the page in Chromium
 	@$(MAKE) --no-print-directory lint
-	cd $(WEB) && npm test
+	cd $(WEB) && npm run --silent check && npm test
 	$(PYTHON) -m pytest
 
 check: $(VENV)/.ready ## Formatting, types, import boundaries and the fast tests; under a minute
