@@ -10,16 +10,26 @@ from models.errors import UserError
 def read_site(path: Path) -> tuple[Site, Rig]:
     """The site of a file, and the calibration of its cameras in the site's order.
 
+    Both must name the same cameras: a camera left out of one of them by mistake would be missed only in a lesson.
+
     Raises:
-        UserError: a file is missing or unreadable, a key or value is wrong, or a camera has no calibration.
+        UserError: a file is missing or unreadable, a key or value is wrong, or a camera is in one file alone.
     """
     site = decode_site(_read(path, "site file"), path)
     calibration = path.parent / site.calibration
     rig = decode_rig(_read(calibration, "calibration"), str(calibration))
+    names = [camera.name for camera in site.cameras]
     try:
-        return site, rig.select([camera.name for camera in site.cameras])
+        chosen = rig.select(names)
     except UserError as error:
         raise UserError(f"site file {path}: {error}") from error
+    unknown = [name for name in rig.names if name not in names]
+    if unknown:
+        raise UserError(
+            f"calibration {calibration}: camera '{unknown[0]}' is not in the site file {path}, which has {', '.join(names)}; "
+            "add it there, remove it from the calibration, or correct its name"
+        )
+    return site, chosen
 
 
 def _read(path: Path, what: str) -> bytes:

@@ -22,7 +22,7 @@ fusion = tests.integration.fake_parts:fusion
 edge = tests.integration.fake_parts:edge
 tablet = tests.integration.fake_parts:tablet
 [kinebox.checks]
-edge = tests.integration.fake_parts:check
+edge = {check}
 """
 
 CAMERA = """
@@ -48,12 +48,15 @@ def write_site(folder: Path, page_port: int, bus_port: int, more: str = "") -> P
     return site
 
 
-def fake_parts(folder: Path) -> dict[str, str]:
-    """An environment in which the parts of the box are the fake ones: an installed package that comes first."""
+def fake_parts(folder: Path, check: str = "tests.integration.fake_parts:check") -> dict[str, str]:
+    """An environment in which the parts of the box are the fake ones: an installed package that comes first.
+
+    `check` is what is checked before the start.
+    """
     package = folder / "packages" / "fake_parts-1.0.dist-info"
-    package.mkdir(parents=True)
+    package.mkdir(parents=True, exist_ok=True)
     (package / "METADATA").write_text("Metadata-Version: 2.1\nName: fake-parts\nVersion: 1.0\n")
-    (package / "entry_points.txt").write_text(ENTRY_POINTS)
+    (package / "entry_points.txt").write_text(ENTRY_POINTS.format(check=check))
     return dict(os.environ) | {"PYTHONPATH": f"{package.parent}{os.pathsep}{ROOT}"}
 
 

@@ -1,0 +1,191 @@
+"""What is wrong with a site is said in one line before anything is started: the real `kinebox run`, the edge's real checks."""
+
+import hashlib
+import json
+import re
+import shutil
+import socket
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from edge.check import NETWORKS
+from tests.integration.box import CAMERA, ROOT, fake_parts, write_site
+from tests.integration.waiting import free_port
+
+pytestmark = pytest.mark.slow
+
+
+@dataclass(frozen=True)
+class House:
+    """A folder in which everything is right until a test breaks it. The processes that must not start are fake ones."""
+
+    folder: Path
+    page_port: int
+    bus_port: int
+
+    @property
+    def site(self) -> Path:
+        return self.folder / "site.toml"
+
+    @property
+    def rig(self) -> Path:
+        return self.folder / "rig.toml"
+
+    @property
+    def data(self) -> Path:
+        return self.folder / "data"
+
+    @property
+    def videos(self) -> Path:
+        return self.data / "footage"
+
+    @property
+    def networks(self) -> Path:
+        return self.data / "networks"
+
+    def run(self) -> "subprocess.CompletedProcess[str]":
+        command = [sys.executable, "-m", "services.cli.main", "run", "--site", str(self.site), "--data", str(self.data)]
+        environment = fake_parts(self.folder, check="edge.check:check")
+        return subprocess.run(command, env=environment, capture_output=True, text=True, cwd=ROOT, timeout=60, check=False)
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> House:
+    house = House(tmp_path, free_port(), free_port())
+    write_site(tmp_path, house.page_port, house.bus_port)
+    house.videos.mkdir(parents=True)
+    house.networks.mkdir()
+    files = {f"{name}.avi": name.encode() * 1000 for name in "ab"}
+    for name, content in files.items():
+        (house.videos / name).write_bytes(content)
+    described = {name: {"bytes": len(content), "sha256": _hash(content)} for name, content in files.items()}
+    (house.videos / "installed.json").write_text(json.dumps({"recipe": "test", "files": described}))
+    entries = {}
+    for name in NETWORKS:
+        content = name.encode() * 100
+        (house.networks / f"{name}.onnx").write_bytes(content)
+        entries[name] = {"file": f"{name}.onnx", "sha256": _hash(content), "recipe": "", "sources": {}}
+    (house.networks / "installed.json").write_text(json.dumps({"version": 1, "networks": entries}))
+    return house
+
+
+def _hash(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _replace(file: Path, old: str, new: str) -> None:
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new, 1))
+
+
+def _truncate(file: Path) -> None:
+    file.write_bytes(file.read_bytes()[:-10])
+
+
+def _undescribed_garbage(house: House) -> None:
+    (house.videos / "installed.json").unlink()
+    (house.videos / "a.avi").write_bytes(b"no video at all" * 100)
+
+
+FAULTS: dict[str, tuple[Callable[[House], object], str]] = {
+    "the site file is missing": (lambda house: house.site.unlink(), r"site file .*site\.toml does not exist; correct"),
+    "the site file is no TOML": (
+        lambda house: house.site.write_text("name = "),
+        r"site file .*site\.toml: .*see docs/configuration",
+    ),
+    "a key is unknown": (
+        lambda house: _replace(house.site, "[tablet]\n", "[tablet]\nspeling = 1\n"),
+        r"site file .*speling.*tablet.*see docs/configuration",
+    ),
+    "a value is out of bounds": (
+        lambda house: _replace(house.site, "[tablet]\n", "[inference]\ncpu_target = 7.0\n[tablet]\n"),
+        r"site file .*cpu_target.*see docs/configuration",
+    ),
+    "the site is of another version": (
+        lambda house: _replace(house.site, "version = 1", "version = 99"),
+        r"site file .*version 99 is not known",
+    ),
+    "the calibration is missing": (lambda house: house.rig.unlink(), r"calibration .*rig\.toml does not exist; correct"),
+    "the calibration lacks a camera": (
+        lambda house: _replace(house.rig, 'name = "b"', 'name = "z"'),
+        r"camera 'b' is not in the calibration, which knows a, z; calibrate it or correct",
+    ),
+    "the calibration names an unknown camera": (
+        lambda house: house.rig.write_text(house.rig.read_text() + CAMERA.format(name="z", x_m=2.0)),
+        r"calibration .*rig\.toml: camera 'z' is not in the site file .*, which has a, b; add it",
+    ),
+    "a rotation is none": (
+        lambda house: _replace(house.rig, "rotation = [[1.0,", "rotation = [[1.1,"),
+        r"calibration .*rig\.toml: camera 'a': rotation is not a rotation matrix .*calibrate this camera again",
+    ),
+    "a rotation mirrors": (
+        lambda house: _replace(house.rig, "rotation = [[1.0,", "rotation = [[-1.0,"),
+        r"calibration .*rig\.toml: camera 'a': rotation is not a rotation matrix .*det -1",
+    ),
+    "a video is missing": (lambda house: (house.videos / "b.avi").unlink(), r"camera 'b': .*b\.avi is missing; correct"),
+    "a video is truncated": (
+        lambda house: _truncate(house.videos / "b.avi"),
+        r"camera 'b': .*b\.avi has 990 bytes instead of 1000; delete .*installed\.json and run `make footage`",
+    ),
+    "a video is none": (_undescribed_garbage, r"camera 'a': .*a\.avi is not a video that can be read .*copy or prepare it again"),
+    "no network is installed": (lambda house: shutil.rmtree(house.networks), r"network movenet-thunder: .*run `make networks`"),
+    "a network is missing": (
+        lambda house: (house.networks / "nanodet.onnx").unlink(),
+        r"network nanodet: .*nanodet\.onnx is missing; delete .* and run `make networks`",
+    ),
+    "a network has a wrong hash": (
+        lambda house: (house.networks / "movenet-lightning.onnx").write_bytes(b"other"),
+        r"network movenet-lightning: .*movenet-lightning\.onnx is damaged .*delete .* and run `make networks`",
+    ),
+    "the page's address is none": (
+        lambda house: _replace(house.site, 'host = "127.0.0.1"', 'host = "192.0.2.99"'),
+        r"port of the page: .*192\.0\.2\.99 .*change tablet\.port",
+    ),
+    "the bus has no port": (
+        lambda house: _replace(house.site, f"tcp/127.0.0.1:{house.bus_port}", "tcp/127.0.0.1:99999"),
+        r"port of the bus: 99999 is no port .*change bus\.endpoint",
+    ),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_the_fault_is_named_with_what_to_do_and_nothing_is_started(house: House, fault: str) -> None:
+    break_it, line = FAULTS[fault]
+    break_it(house)
+    require_refusal(house, line)
+
+
+@pytest.mark.parametrize(("what", "key"), [("page", r"tablet\.port"), ("bus", r"bus\.endpoint")])
+def test_a_port_that_is_taken_is_named_and_nothing_is_started(house: House, what: str, key: str) -> None:
+    port = house.page_port if what == "page" else house.bus_port
+    with socket.create_server(("127.0.0.1", port)):
+        require_refusal(
+            house, rf"port of the {what}: {port} on 127\.0\.0\.1 cannot be used \(.*in use\); stop what .* change {key}"
+        )
+
+
+def require_refusal(house: House, line: str) -> None:
+    """The run says exactly one line, which matches, leaves with code 2 and has started nothing."""
+    result = house.run()
+    assert re.fullmatch(rf"kinebox: .*{line}.*\n", result.stderr), result.stderr
+    assert result.stdout == ""
+    assert result.returncode == 2
+    assert not (house.data / "starts").exists()
+    assert not (house.data / "logs").exists()
+
+
+def test_without_a_fault_the_same_house_starts(house: House) -> None:
+    """Else every refusal above might be for another reason than the one it names."""
+    command = [sys.executable, "-m", "services.cli.main", "run", "--site", str(house.site), "--data", str(house.data)]
+    environment = fake_parts(house.folder, check="edge.check:check")
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, cwd=ROOT) as box:
+        assert box.stdout is not None
+        assert any("Test gym is running" in line for line in box.stdout)
+        box.terminate()
+        assert box.wait(60.0) == 0
