@@ -145,14 +145,14 @@ class SmoothingConfig:
     """
 
     order: Literal[2, 3] = 3
-    difference_m: Float = field(default_factory=lambda: by_distance_from_trunk(0.003, 0.005, 0.008))
+    difference_m: Float = field(default_factory=lambda: by_distance_from_trunk(0.003, 0.005, 0.040))
     difference_freedom: float = 2.0
     carry_s: float = 0.10
     bend_m: Float = field(default_factory=lambda: by_distance_from_trunk(0.03, 0.06, 0.15))
     knots: int = 18
     iterations: int = 1
     robust_sigmas: float = 3.0
-    limb_sigma: float = 0.02
+    limb_sigma: float = 0.03
     limb_samples: int = 90
 
 

@@ -14,6 +14,8 @@ ENDS: Final[Counts] = np.array(list(coco.LIMBS.values()), np.int64)
 
 _MIN_SAMPLES = 10
 _MAX_SIGMA_M = 0.05
+_IMPOSSIBLE = 0.4
+"""Share by which a limb may differ from its length before its far end is not believed."""
 
 
 class LimbLengths:
@@ -37,13 +39,22 @@ class LimbLengths:
         sigmas[enough] = self._config.limb_sigma * lengths[enough]
         return lengths, sigmas
 
+    def impossible(self, points_m: Float) -> Bool:
+        """(17,) joints at the far end of a limb whose length is nowhere near what was learnt."""
+        lengths, _ = self.current()
+        apart = np.linalg.norm(points_m[ENDS[:, 0]] - points_m[ENDS[:, 1]], axis=1)
+        wrong = (lengths > 0) & (np.abs(apart - lengths) > _IMPOSSIBLE * lengths)
+        out = np.zeros(coco.COUNT, np.bool_)
+        out[ENDS[wrong, 1]] = True
+        return out
+
     def learn(self, points_m: Float, covariance_m2: Float, seen: Bool) -> None:
         """Take in joints (17, 3) with covariance (17, 3, 3) of which `seen` (17,) can be measured at."""
         a, b = ENDS[:, 0], ENDS[:, 1]
         apart = points_m[a] - points_m[b]
         distance = np.linalg.norm(apart, axis=1)
         spread = covariance_m2[a] + covariance_m2[b]
-        total = np.trace(spread, axis1=1, axis2=2)
+        total = np.einsum("lii->l", spread)
         sure = seen[a] & seen[b] & (total < 2 * _MAX_SIGMA_M**2) & (distance > 0.05)
         direction = apart / np.maximum(distance, 1e-6)[:, None]
         across = total - np.einsum("li,lij,lj->l", direction, spread, direction)

@@ -12,6 +12,7 @@ from services.fusion.body_filter import BodyFilter
 from services.fusion.compiled import Counts
 from services.fusion.config import FusionConfig
 from services.fusion.history import FilterHistory, Seed
+from services.fusion.joint_filter import Expectation
 from services.fusion.limbs import LimbLengths
 from services.fusion.smoothing import Smoother
 from services.fusion.swap import repair
@@ -20,7 +21,6 @@ from services.fusion.triangulation import Triangulated, triangulate
 from services.fusion.views import Sighting, Views
 
 _TRACK_DEPTH = 32
-_TRUNK = list(coco.TRUNK)
 _REACH_M = 1.3
 """No joint is further from the body's centre."""
 _SEED_SIGMA_M = 0.02
@@ -95,12 +95,25 @@ class Pupil:
             return
         innovation = self._filters.observe(sighting)
         if innovation is not None:
-            self._agreed_s[camera, innovation.used] = np.maximum(self._agreed_s[camera, innovation.used], t_s)
+            agreed = self._agreed_s[camera]
+            agreed[innovation.used & (agreed < t_s)] = t_s
         self._doubt_sides(camera, t_s, swapped)
-        trunk = sighting.usable[_TRUNK]
-        if trunk.sum() >= 3:
-            centre = sighting.points_px[_TRUNK][trunk].mean(axis=0)
-            self.body.observe(t_s, projection, centre, float(sighting.sigma_px[_TRUNK][trunk].max()))
+        self._see_body(t_s, projection, sighting, expected)
+
+    def _see_body(self, t_s: float, projection: Float, sighting: Sighting, expected: Expectation) -> None:
+        """Measure the body's centre; a hidden corner of the trunk is taken to be where it is expected."""
+        total, sigma, seen = np.zeros(2), 1.0, 0
+        for joint in coco.TRUNK:
+            if sighting.usable[joint]:
+                total += sighting.points_px[joint]
+                sigma = max(sigma, float(sighting.sigma_px[joint]))
+                seen += 1
+            elif expected.known[joint]:
+                total += expected.points_px[joint]
+            else:
+                return
+        if seen >= 2:
+            self.body.observe(t_s, projection, 0.25 * total, sigma)
 
     def check(self, config: FusionConfig) -> None:
         """Hold the filters against triangulation at the newest instant that all cameras reach, and give up what nobody sees."""
@@ -178,9 +191,11 @@ class Pupil:
         agreeing = np.bitwise_count(views)
         agreed_s[agreeing >= 2] = t_s
         recent = t_s - agreed_s <= config.filter.guess_s + 1e-9
-        certain = np.trace(covariance_m2, axis1=1, axis2=2) <= config.filter.max_sigma_m**2
+        certain = np.einsum("jii->j", covariance_m2) <= config.filter.max_sigma_m**2
         known = recent & certain & (t_s >= self.since_s - config.frame_s)
-        states = np.where(known, np.where(agreeing >= 2, JointState.SEEN, JointState.GUESSED), JointState.UNKNOWN)
+        # Two views can agree on a wrong point; they cannot lengthen a forearm.
+        seen = (agreeing >= 2) & ~self._limbs.impossible(points_m)
+        states = np.where(known, np.where(seen, JointState.SEEN, JointState.GUESSED), JointState.UNKNOWN)
         return Pose(
             np.where(known[:, None], points_m, 0.0),
             np.where(known[:, None, None], covariance_m2, 0.0),
