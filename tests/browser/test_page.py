@@ -231,3 +231,10 @@ def test_reduced_motion_is_respected(browser: Browser, room: Room) -> None:
     page.keyboard.press("r")
     shown.wait_until(f"Math.abs(Number(d.azimuth) - {first}) < 0.2")
     page.close()
+
+
+def test_a_browser_without_3d_says_so(page: Page, room: Room) -> None:
+    page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+    page.goto(room.page)
+    Shown(page).wait_for_phase("unable")
+    expect(page.get_by_text("This tablet cannot draw in 3D")).to_be_visible()

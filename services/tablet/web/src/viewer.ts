@@ -72,7 +72,8 @@ export class Viewer {
       if (!(error instanceof MotionFrameError)) throw error;
       this.room.unreadable += 1;
     }
-    this.stage.requestDraw();
+    if (this.waiting === null) this.acknowledge();
+    else this.stage.requestDraw();
   }
 
   /** A frame waits to be drawn, in the place of an older one, unless it was under way for too long. */

@@ -5,6 +5,7 @@ export type Phase =
   | 'waiting' // connected; no pupil is seen
   | 'stale' // a figure is there, and it is old
   | 'late' // frames come, and all of them too late: the network is too slow
+  | 'unable' // this browser draws nothing in 3D
   | 'live';
 
 export interface PhaseInputs {
@@ -22,7 +23,7 @@ export interface PhaseInputs {
 /** Attempts that may fail before "connecting" becomes "no connection". */
 const PATIENCE = 3;
 
-export function phaseOf(inputs: PhaseInputs): Phase {
+export function phaseOf(inputs: PhaseInputs): Exclude<Phase, 'unable'> {
   if (!inputs.connected) return inputs.everConnected || inputs.failures >= PATIENCE ? 'offline' : 'connecting';
   if (inputs.hasFigure && !inputs.stale) return 'live';
   if (inputs.dropping) return 'late';

@@ -40,11 +40,15 @@ export function facingRad(pose: Pose): number {
   return Math.atan2(-across(0), across(1));
 }
 
-/** The position of a camera that shows the whole pupil at `target`, whatever the shape of the screen. */
-export function firstView(pose: Pose, target: Vector3, camera: PerspectiveCamera): Vector3 {
+/** How far away a camera shows a whole pupil, whatever the shape of the screen. */
+export function firstDistanceM(camera: PerspectiveCamera): number {
   const halfHeight = Math.tan((camera.fov * Math.PI) / 360);
-  const distance = Math.max(VIEW_HEIGHT_M / 2 / halfHeight, VIEW_WIDTH_M / 2 / (halfHeight * camera.aspect));
-  return around(facingRad(pose) + AZIMUTH_OFFSET_RAD, ELEVATION_RAD, distance).add(target);
+  return Math.max(VIEW_HEIGHT_M / 2 / halfHeight, VIEW_WIDTH_M / 2 / (halfHeight * camera.aspect));
+}
+
+/** The position of a camera that shows the whole pupil at `target`. */
+export function firstView(pose: Pose, target: Vector3, camera: PerspectiveCamera): Vector3 {
+  return around(facingRad(pose) + AZIMUTH_OFFSET_RAD, ELEVATION_RAD, firstDistanceM(camera)).add(target);
 }
 
 /** Where the light comes from, seen from the pupil: over the right shoulder of the one who looks from the first view. */

@@ -62,6 +62,13 @@ export class Orbit {
     this.camera.position.add(shift);
   }
 
+  /** Comes nearer or goes away without turning. */
+  setDistance(distanceM: number): void {
+    const offset = this.camera.position.clone().sub(this.controls.target).setLength(distanceM);
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+  }
+
   /** Goes to another view, in an instant or in half a second. */
   moveTo(target: Vector3, position: Vector3, gently: boolean): void {
     this.touched = false;

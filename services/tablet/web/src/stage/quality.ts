@@ -6,18 +6,26 @@ const SLOW_MS = 40;
 const GAIN = 0.05;
 const FIRST_LOOK = 30;
 
-/** The quality to begin with: as the page's address says (`?drawing=full`), or light where the browser would draw in software. */
-export function firstQuality(address: string, hasSoftwareOnly: () => boolean): Quality {
+/** The quality that the page's address asks for (`?drawing=full`, `?drawing=light`), which is then kept; null if it asks for none. */
+export function wishedQuality(address: string): Quality | null {
   const wish = new URL(address).searchParams.get('drawing');
-  if (wish === 'full' || wish === 'light') return wish;
-  return hasSoftwareOnly() ? 'light' : 'full';
+  return wish === 'full' || wish === 'light' ? wish : null;
 }
 
-/** Whether a new canvas would be drawn without the help of a GPU. */
+/** Whether a canvas can be drawn on at all. */
+export function canDraw(): boolean {
+  return hasContext({});
+}
+
+/** Whether a canvas would be drawn without the help of a GPU. */
 export function hasSoftwareOnly(): boolean {
-  const probe = document.createElement('canvas').getContext('webgl2', { failIfMajorPerformanceCaveat: true });
-  probe?.getExtension('WEBGL_lose_context')?.loseContext();
-  return probe === null;
+  return !hasContext({ failIfMajorPerformanceCaveat: true });
+}
+
+function hasContext(attributes: WebGLContextAttributes): boolean {
+  const context = document.createElement('canvas').getContext('webgl2', attributes);
+  context?.getExtension('WEBGL_lose_context')?.loseContext(); // a browser has few contexts to give
+  return context !== null;
 }
 
 /** Watches how long pictures are waited for, and says once when they are too slow. */

@@ -1,22 +1,14 @@
-import {
-  DirectionalLight,
-  HemisphereLight,
-  PCFShadowMap,
-  PerspectiveCamera,
-  Scene,
-  Vector3,
-  WebGLRenderer,
-} from 'three';
+import { PCFShadowMap, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
 import { Figure } from '../figure/figure';
 import { standing, type Pose } from '../figure/pose';
 import { Joint } from '../figure/skeleton';
 import { Floor } from './floor';
-import { firstView, follow, hips, lightOffset, standpoint } from './framing';
+import { firstDistanceM, firstView, follow, hips, lightOffset, standpoint } from './framing';
+import { keyLight, skyLight } from './light';
 import { Orbit } from './orbit';
-import { PaceWatch, firstQuality, hasSoftwareOnly } from './quality';
+import { PaceWatch, hasSoftwareOnly, wishedQuality, type Quality } from './quality';
 
 const MAX_PIXEL_RATIO = 1.5;
-const SHADOW_REACH_M = 2.4;
 
 /** The scene: figure, floor, light and view. Draws when something changed, at most once a screen refresh, and not otherwise. */
 export class Stage {
@@ -26,7 +18,7 @@ export class Stage {
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
   private readonly camera = new PerspectiveCamera(32, 1, 0.1, 60);
-  private readonly light = new DirectionalLight(0xffffff, 2.0);
+  private readonly light = keyLight();
   private readonly figure = new Figure();
   private readonly floor = new Floor();
   private readonly orbit: Orbit;
@@ -35,7 +27,8 @@ export class Stage {
   private lightOffset = lightOffset(standing());
   private pose: Pose = standing();
   private framed = false;
-  private quality = firstQuality(location.href, hasSoftwareOnly);
+  private readonly wish = wishedQuality(location.href);
+  private quality: Quality = this.wish ?? (hasSoftwareOnly() ? 'light' : 'full');
   private readonly pace = new PaceWatch();
   private requested = 0;
   private requestedMs = 0;
@@ -56,23 +49,10 @@ export class Stage {
     this.renderer.shadowMap.type = PCFShadowMap;
     this.camera.up.set(0, 0, 1);
     this.orbit = new Orbit(this.camera, canvas, () => this.requestDraw());
-    this.light.castShadow = true;
-    this.light.shadow.mapSize.set(1024, 1024);
-    this.light.shadow.radius = 5;
-    this.light.shadow.bias = -0.0006;
-    this.light.shadow.normalBias = 0.012;
-    Object.assign(this.light.shadow.camera, {
-      left: -SHADOW_REACH_M,
-      right: SHADOW_REACH_M,
-      top: SHADOW_REACH_M,
-      bottom: -SHADOW_REACH_M,
-      near: 0.5,
-      far: 12,
-    });
-    const sky = new HemisphereLight(0xffffff, 0xaab6c8, 1.85);
-    sky.position.set(0, 0, 1);
-    this.scene.add(this.figure.group, this.floor.group, this.light, this.light.target, sky);
+    this.scene.add(this.figure.group, this.floor.group, this.light, this.light.target, skyLight());
     this.show(this.pose);
+    this.resetView(false);
+    canvas.addEventListener('webglcontextrestored', () => this.requestDraw());
     this.observer = new ResizeObserver(() => this.resize());
     this.observer.observe(canvas);
   }
@@ -98,17 +78,17 @@ export class Stage {
     this.requestDraw();
   }
 
-  /** Another person or another beginning: size and view are chosen anew at the next `reframe`. */
+  /** Another beginning, perhaps with another person: size and view are chosen anew with the next pose. */
   startAnew(): void {
     this.figure.forgetSize();
     this.framed = false;
   }
 
-  /** Chooses the first view of this pose, once. */
+  /** Chooses the first view of this pose, once, unless somebody has chosen a view already. */
   frameOnce(): void {
     if (this.framed) return;
     this.framed = true;
-    this.resetView(false);
+    if (!this.orbit.touched) this.resetView(false);
   }
 
   /** Back to the first view, from where the pupil is now. */
@@ -139,7 +119,8 @@ export class Stage {
 
   private draw(nowMs: number): void {
     this.requested = 0;
-    if (this.quality === 'full' && this.pace.tooSlow(performance.now() - this.requestedMs)) this.drawLight();
+    const waitedMs = performance.now() - this.requestedMs;
+    if (this.wish === null && this.quality === 'full' && this.pace.tooSlow(waitedMs)) this.drawLight();
     this.beforeDraw();
     const seconds = Math.min((nowMs - this.lastMs) / 1000, 0.1);
     this.lastMs = nowMs;
@@ -154,7 +135,7 @@ export class Stage {
   private drawLight(): void {
     this.quality = 'light';
     this.light.castShadow = false;
-    this.resize();
+    this.setPixels();
   }
 
   private joint(index: number): Vector3 {
@@ -166,9 +147,13 @@ export class Stage {
     if (clientWidth === 0 || clientHeight === 0) return;
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
+    if (!this.orbit.touched) this.orbit.setDistance(firstDistanceM(this.camera));
+    this.setPixels();
+  }
+
+  private setPixels(): void {
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, this.quality === 'full' ? MAX_PIXEL_RATIO : 1));
-    this.renderer.setSize(clientWidth, clientHeight, false);
-    if (!this.orbit.touched) this.resetView(false);
+    this.renderer.setSize(this.canvas.clientWidth, this.canvas.clientHeight, false);
     this.requestDraw();
   }
 }

@@ -41,6 +41,11 @@ const phases: Record<Phase, { pill: string; title: string; words: string }> = {
     title: 'The network is too slow',
     words: 'Pictures arrive too late to be shown. Move nearer to the access point.',
   },
+  unable: {
+    pill: 'No picture',
+    title: 'This tablet cannot draw in 3D',
+    words: 'Its browser has no WebGL 2. Update it, or use another tablet.',
+  },
   live: { pill: 'Live', title: '', words: '' },
 };
 
