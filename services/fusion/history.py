@@ -63,28 +63,33 @@ class FilterHistory:
         """Exchange left and right of the flagged joints (17,) from the newest event on."""
         self._insert(_Step(self.newest.t_s, None, (), mask))
 
-    def observe(self, sighting: Sighting) -> Innovation | None:
-        """Fuse a sighting at its own time; None if it is older than the history."""
-        return self._insert(_Step(sighting.t_s, sighting, ()))
+    def observe(self, sighting: Sighting, predicted: JointFilter) -> Innovation | None:
+        """Fuse a sighting at its own time; None if it is older than the history.
 
-    def _insert(self, step: _Step) -> Innovation | None:
+        `predicted` is what `at` gave for that time; it is taken over.
+        """
+        return self._insert(_Step(sighting.t_s, sighting, ()), predicted)
+
+    def _insert(self, step: _Step, predicted: JointFilter | None = None) -> Innovation | None:
         if step.t_s < self._before.t_s:
             return None
         place = len(self._steps)
         while place and self._steps[place - 1].t_s > step.t_s:
             place -= 1
         self._steps.insert(place, step)
-        innovation = self._run(place)
+        innovation = self._run(place, predicted)
         for later in range(place + 1, len(self._steps)):
             self._run(later)
         if len(self._steps) > self._config.history:
             self._before = self._steps.pop(0).after
         return innovation
 
-    def _run(self, place: int) -> Innovation | None:
+    def _run(self, place: int, predicted: JointFilter | None = None) -> Innovation | None:
         step = self._steps[place]
-        step.after = (self._steps[place - 1].after if place else self._before).copy()
-        step.after.advance(step.t_s, self._config)
+        if predicted is None:
+            predicted = (self._steps[place - 1].after if place else self._before).copy()
+            predicted.advance(step.t_s, self._config)
+        step.after = predicted
         for seed in step.seeds:
             if seed.point_m is None or seed.covariance_m2 is None:
                 step.after.alive[seed.joint] = False

@@ -49,16 +49,9 @@ class JointFilter:
 
     def copy(self) -> "JointFilter":
         """An independent filter in the same state."""
-        twin = JointFilter(self.t_s)
-        twin.assign(self)
+        twin = JointFilter.__new__(JointFilter)
+        twin.t_s, twin.state, twin.covariance, twin.alive = self.t_s, self.state.copy(), self.covariance.copy(), self.alive.copy()
         return twin
-
-    def assign(self, other: "JointFilter") -> None:
-        """Take over another filter's state."""
-        self.t_s = other.t_s
-        self.state[:] = other.state
-        self.covariance[:] = other.covariance
-        self.alive[:] = other.alive
 
     def seed(self, joint: int, point_m: Float, covariance_m2: Float, config: FilterConfig) -> None:
         """Start a joint at a position (3,) with covariance (3, 3), of unknown velocity."""

@@ -25,19 +25,12 @@ class LimbLengths:
         self._config = config
         self._samples: Float = np.full((len(ENDS), config.limb_samples), np.nan)
         self._next = 0
+        self._lengths: Float = np.zeros(len(ENDS))
+        self._sigmas: Float = np.ones(len(ENDS))
 
     def current(self) -> tuple[Float, Float]:
-        """(8,) lengths and (8,) sigmas in metres; a length of 0 is not known yet."""
-        lengths, sigmas = np.zeros(len(ENDS)), np.ones(len(ENDS))
-        if not np.isfinite(self._config.limb_sigma):
-            return lengths, sigmas
-        ordered = np.sort(self._samples, axis=1)
-        count = np.isfinite(ordered).sum(axis=1)
-        middle = ordered[np.arange(len(ENDS)), np.maximum(count - 1, 0) // 2]
-        enough = count >= _MIN_SAMPLES
-        lengths[enough] = middle[enough]
-        sigmas[enough] = self._config.limb_sigma * lengths[enough]
-        return lengths, sigmas
+        """(8,) lengths and (8,) sigmas in metres, not to be changed; a length of 0 is not known yet."""
+        return self._lengths, self._sigmas
 
     def impossible(self, points_m: Float) -> Bool:
         """(17,) joints at the far end of a limb whose length is nowhere near what was learnt."""
@@ -62,3 +55,12 @@ class LimbLengths:
         unbiased = distance - across / (2 * np.maximum(distance, 0.05))
         self._samples[:, self._next] = np.where(sure, unbiased, np.nan)
         self._next = (self._next + 1) % self._samples.shape[1]
+        if np.isfinite(self._config.limb_sigma):
+            self._measure()
+
+    def _measure(self) -> None:
+        ordered = np.sort(self._samples, axis=1)
+        count = np.isfinite(ordered).sum(axis=1)
+        middle = ordered[np.arange(len(ENDS)), np.maximum(count - 1, 0) // 2]
+        self._lengths = np.where(count >= _MIN_SAMPLES, middle, 0.0)
+        self._sigmas = np.where(count >= _MIN_SAMPLES, self._config.limb_sigma * middle, 1.0)

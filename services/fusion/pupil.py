@@ -83,7 +83,8 @@ class Pupil:
     def follow(self, camera: int, t_s: float, persons: tuple[Sighting, ...], config: FusionConfig) -> None:
         """Find the pupil in one picture and fuse it at the picture's own time."""
         projection = self._views.projections[camera]
-        expected = self._filters.at(t_s).expect(projection)
+        predicted = self._filters.at(t_s)
+        expected = predicted.expect(projection)
         found = pick_pupil(persons, expected, config.association.person_gate_m)
         if found is None:
             self.misses[camera] += 1
@@ -93,7 +94,7 @@ class Pupil:
         sighting, swapped = repair(found, expected)
         if not self._tracks.add(camera, sighting):
             return
-        innovation = self._filters.observe(sighting)
+        innovation = self._filters.observe(sighting, predicted)
         if innovation is not None:
             agreed = self._agreed_s[camera]
             agreed[innovation.used & (agreed < t_s)] = t_s
