@@ -14,6 +14,7 @@ from services.fusion.config import FusionConfig
 from services.fusion.history import FilterHistory, Seed
 from services.fusion.joint_filter import Expectation
 from services.fusion.limbs import LimbLengths
+from services.fusion.singer import separations2
 from services.fusion.smoothing import Smoother
 from services.fusion.swap import repair
 from services.fusion.timing import Tracks
@@ -130,9 +131,7 @@ class Pupil:
         found = triangulate(self._views, points, sigma, usable, config.triangulation, prior)
         near = np.linalg.norm(found.points_m - self.body.at(instant)[:3], axis=1) < _REACH_M
         self._limbs.learn(found.points_m, found.covariance_m2, (found.count >= 2) & near)
-        apart = found.points_m - filters.state[:, :3]
-        spread = found.covariance_m2 + filters.covariance[:, :3, :3] + np.eye(3) * 1e-6
-        distance2 = np.einsum("ji,ji->j", apart, np.linalg.solve(spread, apart[..., None])[..., 0])
+        distance2 = separations2(found.points_m, found.covariance_m2, filters.state, filters.covariance)
         supporters = (self._agreed_s >= instant - config.filter.view_memory_s).sum(axis=0)
         better = near & (found.count >= 2) & (found.count >= supporters)
         against = better & filters.alive & (distance2 > config.filter.reseed_gate)

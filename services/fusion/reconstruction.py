@@ -12,7 +12,7 @@ from services.fusion.config import FusionConfig
 from services.fusion.pupil import Pupil
 from services.fusion.views import Sighting, Views
 
-_CHECK_EVERY = 2
+_CHECK_EVERY = 3
 """Ticks between two triangulations of all joints."""
 
 

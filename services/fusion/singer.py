@@ -185,3 +185,20 @@ def expect_joints(state: Float, covariance: Float, alive: Bool, projection: Floa
                 for m in range(3):
                     variance[j] += 0.5 * jacobian[k] * covariance[j, k, m] * jacobian[m]
     return points, variance, scale, known
+
+
+@compiled
+def separations2(points: Float, spreads: Float, state: Float, covariance: Float) -> Float:
+    """(J,) squared distances in sigmas of points (J, 3), of covariance (J, 3, 3), from the filters' positions; infinite for NaN."""
+    out = np.full(points.shape[0], np.inf)
+    spread = np.empty((3, 3))
+    for j in range(points.shape[0]):
+        if np.isnan(points[j]).any():
+            continue
+        for k in range(3):
+            for m in range(3):
+                spread[k, m] = spreads[j, k, m] + covariance[j, k, m]
+            spread[k, k] += 1e-6
+        apart = points[j] - state[j, :3]
+        out[j] = (apart * np.linalg.solve(spread, apart)).sum()
+    return out
