@@ -64,7 +64,8 @@ $(WEB)/node_modules/.ready: $(WEB)/package-lock.json | $(VENV)/.ready
 	@echo "Installing the page's packages ..."
 	@cd $(WEB) && npm ci --no-audit --no-fund --loglevel=error
 	@touch $@
-$(WEB)/dist/index.html: $(WEB)/node_modules/.ready $(WEB)/index.html $(shell find $(WEB)/src -type f 2>/dev/null)
+WEB_SOURCES := $(shell find $(WEB)/src $(WEB)/public -type f) $(addprefix $(WEB)/,index.html package.json tsconfig.json vite.config.ts)
+$(WEB)/dist/index.html: $(WEB)/node_modules/.ready $(WEB_SOURCES)
 	@cd $(WEB) && npm run --silent build
 	@touch $@
 
