@@ -13,7 +13,7 @@ from services.fusion.pupil import Pupil
 from services.fusion.views import Sighting, Views
 
 _CHECK_EVERY = 3
-"""Ticks between two triangulations of all joints."""
+"""Ticks between two triangulations of all joints, and two looks at who else is there."""
 
 
 class Reconstruction:
@@ -62,7 +62,7 @@ class Reconstruction:
                 self.pupil.check(config)
             if self.pupil.lost:
                 self._familiar, self.pupil = self.pupil.familiar, None
-            else:
+            elif self._ticks % _CHECK_EVERY == 0:
                 self._challenge(self.pupil, now, config)
         if self.pupil is None:
             self._choose(now, config)
