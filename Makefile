@@ -64,7 +64,7 @@ $(WEB)/node_modules/.ready: $(WEB)/package-lock.json | $(VENV)/.ready
 	@echo "Installing the page's packages ..."
 	@cd $(WEB) && npm ci --no-audit --no-fund --loglevel=error
 	@touch $@
-WEB_SOURCES := $(shell find $(WEB)/src $(WEB)/public -type f) $(addprefix $(WEB)/,index.html package.json tsconfig.json vite.config.ts)
+WEB_SOURCES := $(shell find $(WEB)/src $(WEB)/public -type f) $(addprefix $(WEB)/,index.html package.json svelte.config.js tsconfig.json vite.config.ts)
 $(WEB)/dist/index.html: $(WEB)/node_modules/.ready $(WEB_SOURCES)
 	@cd $(WEB) && npm run --silent build
 	@touch $@
