@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from models.errors import UserError
+from services.cli.user_error import exit_with_line
 
 SiteFile = Annotated[Path, typer.Option("--site", help="The site file.", dir_okay=False)]
 DataFolder = Annotated[Path, typer.Option("--data", help="The folder with networks and footage.", file_okay=False)]
@@ -28,8 +29,7 @@ def main() -> None:
     try:
         app()
     except UserError as error:
-        typer.echo(f"kinebox: {' '.join(str(error).split())}", err=True)
-        sys.exit(2)
+        exit_with_line(error)
     except KeyboardInterrupt:
         sys.exit(130)
 
@@ -50,13 +50,8 @@ def process(
     data: DataFolder = Path("build"),
     camera: Annotated[str | None, typer.Option(help="The camera that an edge process serves.")] = None,
     start_ns: Annotated[int | None, typer.Option(help="Monotonic time in ns that all processes count from.")] = None,
-    parent: Annotated[int | None, typer.Option(help="End when this process, the parent, is gone.")] = None,
 ) -> None:
     """Run one process of the box on its own."""
-    from services.supervisor.lifeline import end_with_parent  # noqa: PLC0415
-
-    if parent is not None and not end_with_parent(parent):
-        return
     from services.cli.process import ProcessOrder, run_process  # noqa: PLC0415
     from services.support import logs  # noqa: PLC0415
 

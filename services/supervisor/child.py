@@ -4,11 +4,14 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 USER_ERROR_PREFIX = "kinebox: "
+EDGE_NICENESS = 5
+"""Inference takes all the CPU that it is given; fusion and the page, which need little, shall not wait for it."""
+_MODULE = "services.cli.child"
 _READ_BYTES = 65536
 _READS_AT_ONCE = 16
 _LONGEST_LINE_BYTES = 65536
@@ -26,11 +29,25 @@ class ChildSpec:
         """The process's name on the bus."""
         return self.entry if self.camera is None else f"{self.entry}-{self.camera}"
 
+    @property
+    def niceness(self) -> int:
+        """How far the process stands back when the CPU is short."""
+        return 0 if self.camera is None else EDGE_NICENESS
+
     def command(self, site: Path, data: Path, start_ns: int) -> list[str]:
         """The command line of the process; it ends with the process that calls this."""
-        words = [sys.executable, "-P", "-m", "services.cli.main", "process", self.entry, "--site", str(site), "--data", str(data)]
+        words = [sys.executable, "-P", "-m", _MODULE, self.entry, "--site", str(site), "--data", str(data)]
         words += ["--start-ns", str(start_ns), "--parent", str(os.getpid())]
         return words if self.camera is None else [*words, "--camera", self.camera]
+
+
+def name_of(command: Sequence[str]) -> str | None:
+    """The name on the bus of the process that has this command line; None if it is none of the box's."""
+    if _MODULE not in command:
+        return None
+    entry = command[command.index(_MODULE) + 1]
+    camera = command[command.index("--camera") + 1] if "--camera" in command else None
+    return ChildSpec(entry, camera).name
 
 
 class Child:
@@ -39,7 +56,7 @@ class Child:
     It must be made on the main thread: the kernel ends it together with the thread that started it.
     """
 
-    def __init__(self, command: list[str], environment: Mapping[str, str]) -> None:
+    def __init__(self, command: list[str], environment: Mapping[str, str], niceness: int = 0) -> None:
         # A process group of its own, so that Ctrl-C at a terminal reaches the supervisor alone and the end is orderly.
         self._process = subprocess.Popen(  # noqa: S603 - our own interpreter and module
             command,
@@ -49,6 +66,8 @@ class Child:
             stderr=subprocess.STDOUT,
             process_group=0,
         )
+        if niceness:
+            os.setpriority(os.PRIO_PROCESS, self.pid, os.getpriority(os.PRIO_PROCESS, 0) + niceness)
         assert self._process.stdout is not None  # noqa: S101 - it was asked for above
         self._output = self._process.stdout
         os.set_blocking(self._output.fileno(), False)

@@ -122,7 +122,7 @@ class Supervisor:
 
     def _start(self, post: Post) -> None:
         command = post.spec.command(self._site_file, self._data, self._start_ns)
-        post.manned_by(Child(command, self._environment))
+        post.manned_by(Child(command, self._environment, post.spec.niceness))
         self._silence.start(post.name, time.monotonic())
 
     def _attend(self, post: Post, now_s: float) -> None:

@@ -30,6 +30,7 @@ from models.messages.health import Health
 from models.messages.motion import JointState
 from models.messages.observation import Observation
 from services.bus.zenoh_bus import open_client
+from services.supervisor.child import name_of
 from services.tablet import motion_frame
 from tests.bench.report import Report
 
@@ -78,9 +79,10 @@ def processes(box: psutil.Process) -> dict[str, psutil.Process]:
     """The box's processes by their name on the bus."""
     found = {"supervisor": box}
     for child in box.children(recursive=True):
-        with contextlib.suppress(psutil.Error, IndexError, ValueError):
-            command = child.cmdline()
-            found[command[command.index("process") + 1]] = child
+        with contextlib.suppress(psutil.Error):
+            name = name_of(child.cmdline())
+            if name is not None:
+                found[name] = child
     return found
 
 
