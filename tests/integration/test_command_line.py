@@ -1,0 +1,112 @@
+"""The command `kinebox` as people type it."""
+
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from tests.integration.box import ROOT, fake_parts, write_site
+from tests.integration.waiting import free_port, until
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def site(tmp_path: Path) -> Path:
+    return write_site(tmp_path, free_port(), free_port())
+
+
+def kinebox(*words: str) -> "subprocess.CompletedProcess[str]":
+    command = [sys.executable, "-m", "services.cli.main", *words]
+    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=60, check=False)
+
+
+@contextmanager
+def running(site: Path, *words: str) -> "Iterator[subprocess.Popen[str]]":
+    data = site.parent / "data"
+    data.mkdir(exist_ok=True)
+    command = [sys.executable, "-m", "services.cli.main", "process", *words, "--site", str(site), "--data", str(data)]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, env=fake_parts(site.parent), stdout=pipe, stderr=pipe, text=True, cwd=ROOT) as process:
+        yield process
+        process.kill()
+
+
+def test_the_command_is_installed_under_its_name() -> None:
+    result = subprocess.run([Path(sys.executable).parent / "kinebox", "version"], capture_output=True, text=True, check=True)
+    assert result.stdout.strip().count(".") == 2
+
+
+def test_a_good_site_file_is_said_to_be_good(site: Path) -> None:
+    result = kinebox("config", "check", str(site))
+    assert result.returncode == 0
+    assert result.stdout == f"{site} is good: 'Test gym' with 2 calibrated cameras (a, b)\n"
+
+
+def test_a_site_file_is_shown_with_its_defaults(site: Path) -> None:
+    result = kinebox("config", "show", str(site))
+    assert msgspec.json.decode(result.stdout)["fusion"] == {"preset": "default", "live_hz": 30.0}
+
+
+def test_a_bad_site_file_is_one_line_and_code_2(site: Path) -> None:
+    site.write_text(site.read_text() + "[inferense]\n")
+    result = kinebox("config", "check", str(site))
+    assert result.returncode == 2
+    assert result.stdout == ""
+    assert result.stderr.count("\n") == 1
+    assert "`inferense`" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (("cook",), "no process is called 'cook' (there are: edge, fusion, tablet)"),
+        (("edge", "--camera", "zzz"), "camera 'zzz' is not in "),
+    ],
+)
+def test_a_process_that_cannot_be_is_one_line_and_code_2(site: Path, words: tuple[str, ...], line: str) -> None:
+    with running(site, *words) as process:
+        _, errors = process.communicate(timeout=60)
+    assert process.returncode == 2
+    assert errors.count("\n") == 1
+    assert errors.startswith(f"kinebox: {line}")
+
+
+def test_the_router_on_a_port_that_is_taken_is_one_line_and_code_2(site: Path) -> None:
+    with running(site, "fusion") as first:
+        until((site.parent / "data" / "starts" / "fusion").exists, "the first router")
+        with running(site, "fusion") as second:
+            _, errors = second.communicate(timeout=60)
+        first.terminate()
+        assert first.wait(60.0) == 0
+    assert second.returncode == 2
+    assert errors.count("\n") == 1
+    assert "is in use already; stop the other KineBox or change bus.endpoint" in errors
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
+def test_a_process_ends_cleanly_when_it_is_told_to(site: Path, number: signal.Signals) -> None:
+    with running(site, "fusion") as process:
+        until((site.parent / "data" / "starts" / "fusion").exists, "the process")
+        process.send_signal(number)
+        _, errors = process.communicate(timeout=60)
+    assert process.returncode == 0
+    assert errors == ""
+
+
+def test_a_process_that_waits_for_its_router_ends_when_it_is_told_to(site: Path) -> None:
+    with running(site, "edge", "--camera", "a") as process:
+        # It has its handlers before anything else; there is nothing to see of its waiting.
+        until(lambda: _catches(process.pid, signal.SIGTERM), "the process to listen to signals")
+        process.terminate()
+        assert process.wait(60.0) == 0
+
+
+def _catches(pid: int, number: signal.Signals) -> bool:
+    line = next(line for line in Path(f"/proc/{pid}/status").read_text().splitlines() if line.startswith("SigCgt:"))
+    return bool(int(line.split()[1], 16) >> (number - 1) & 1)
