@@ -17,11 +17,33 @@ import numpy as np
 
 from models.arrays import Bool, Float, UInt32
 from models.skeleton import coco
+from services.fusion.banded import inverse_blocks, solve_banded
 from services.fusion.config import SmoothingConfig
 from services.fusion.limbs import ENDS, LimbLengths
+from services.fusion.readout import read_window
 from services.fusion.timing import Tracks
 from services.fusion.views import Views
-from services.fusion.window import smooth_window
+from services.fusion.window import BAND, assemble
+
+
+class Equations:
+    """Room for the normal equations, used anew in every step: `window.py` and `banded.py` say what is in it."""
+
+    def __init__(self, knots: int, joints: int) -> None:
+        self._blocks: Float = np.empty((knots, 4, 6, joints))
+        self._penalty: Float = np.empty((knots, 4, joints))
+        self.matrix: Float = np.empty((3 * knots, BAND, joints))
+        self.pivots: Float = np.empty((3 * knots, joints))
+        self.solution: Float = np.empty((knots, 3, joints))
+
+    @property
+    def arrays(self) -> tuple[Float, Float, Float, Float]:
+        """What `assemble` fills."""
+        return self._blocks, self._penalty, self.matrix, self.solution
+
+    def solve(self) -> None:
+        """Turn the right side into the solution."""
+        solve_banded(self.matrix, self.solution.reshape(self.pivots.shape), self.pivots)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +66,7 @@ class Smoother:
 
     Attributes:
         first: grid index of the oldest position; position k is at (first + k) * frame_s.
-        positions_m: (17, knots, 3).
+        positions_m: (knots, 3, 17).
         covariance_m2: (17, 3, 3) of the first position read out last time; the neighbours' limb terms are weighed by it.
         known: (17, knots) whether a position holds anything.
     """
@@ -53,9 +75,12 @@ class Smoother:
         self.first = first
         self._frame_s = frame_s
         self._config = config
-        self.positions_m: Float = np.zeros((coco.COUNT, config.knots, 3))
+        self.positions_m: Float = np.zeros((config.knots, 3, coco.COUNT))
         self.covariance_m2: Float = np.tile(np.eye(3) * 0.02**2, (coco.COUNT, 1, 1))
         self.known: Bool = np.zeros((coco.COUNT, config.knots), np.bool_)
+        self._strength: Float = 1.0 / config.difference_m**2
+        self._bend: Float = 1.0 / config.bend_m**2
+        self._equations = Equations(config.knots, coco.COUNT)
 
     @property
     def last(self) -> int:
@@ -65,57 +90,46 @@ class Smoother:
     def extend(self) -> None:
         """Move on by one instant."""
         self.first += 1
-        self.positions_m[:, :-1] = self.positions_m[:, 1:]
+        self.positions_m[:-1] = self.positions_m[1:]
         self.known[:, :-1] = self.known[:, 1:]
 
     def foresee(self, index: int, points_m: Float, known: Bool) -> None:
         """Take grid instant `index`, which pictures do not hold yet, to be at these (17, 3) where `known` (17,)."""
-        self.positions_m[known, index - self.first] = points_m[known]
-        self.known[:, index - self.first] |= known
+        knot = index - self.first
+        np.copyto(self.positions_m[knot], points_m.T, where=known)
+        self.known[:, knot] |= known
 
     def restart(self, joint: int, t_s: float, point_m: Float) -> None:
         """Take a joint to have been at a position (3,) from `t_s` on, and wherever it was unknown."""
         instants = (self.first + np.arange(self._config.knots)) * self._frame_s
         anew = (instants >= t_s) | ~self.known[joint]
-        self.positions_m[joint, anew] = point_m
+        self.positions_m[anew, :, joint] = point_m
         self.known[joint] = True
 
     def exchange(self, mask: Bool, since_s: float) -> None:
         """Exchange left and right of the flagged joints (17,) from an instant on."""
         order = np.where(mask, coco.MIRROR, np.arange(coco.COUNT))
         from_knot = max(int(np.ceil(since_s / self._frame_s)) - self.first, 0)
-        self.positions_m[:, from_knot:] = self.positions_m[order, from_knot:]
+        self.positions_m[from_knot:] = self.positions_m[from_knot:, :, order]
 
     def step(self, tracks: Tracks, views: Views, limbs: LimbLengths, instants_s: Float, memories_s: Float) -> Smoothed:
         """Improve all positions, and read out n instants (n,), naming views that agree within `memories_s` (n,) of each."""
-        config = self._config
-        lengths, sigmas = limbs.current()
-        newest_s = max(tracks.newest_s(slot) for slot in range(len(views)))
-        points, covariance, seen = smooth_window(
-            self.positions_m,
-            self.known,
-            self.first * self._frame_s,
-            self._frame_s,
-            views.projections,
-            tracks.times_s,
-            tracks.counts,
-            tracks.points_px,
-            tracks.sigma_px,
-            tracks.usable,
-            config.order,
-            1.0 / config.difference_m**2,
-            config.difference_freedom,
-            1.0 / config.bend_m**2,
-            config.robust_sigmas**2,
-            config.iterations,
-            ENDS,
-            lengths,
-            sigmas,
-            self.covariance_m2,
-            newest_s / self._frame_s - self.first,
-            config.carry_s / self._frame_s,
-            instants_s,
-            memories_s,
-        )
+        config, equations = self._config, self._equations
+        start_s, frame_s = self.first * self._frame_s, self._frame_s
+        held = max(tracks.newest_s(slot) for slot in range(len(views))) / frame_s - self.first
+        seen = tracks.times_s, tracks.counts, tracks.points_px, tracks.sigma_px, tracks.usable
+        pictures = start_s, frame_s, views.projections, *seen
+        differences = config.order, self._strength, config.difference_freedom, self._bend, config.robust_sigmas**2
+        bones = ENDS, *limbs.current(), self.covariance_m2
+        alive: Bool = np.logical_or.reduce(self.known, axis=1)
+        for _ in range(config.iterations):
+            assemble(self.positions_m, self.known, *pictures, *differences, *bones, held, *equations.arrays)
+            equations.solve()
+            np.copyto(self.positions_m, equations.solution, where=alive)
+        self.known |= alive[:, None]
+        # The later of the two positions around an instant is the less certain one.
+        later = np.minimum(np.ceil(instants_s / frame_s - self.first - 1e-6).astype(np.int64), config.knots - 1)
+        covariance = inverse_blocks(equations.matrix, equations.pivots, 3 * later)
         self.covariance_m2 = covariance[0]
-        return Smoothed(points, covariance, seen)
+        points, views_seen = read_window(self.positions_m, alive, *pictures, held, config.carry_s / frame_s, instants_s, memories_s)
+        return Smoothed(points, covariance, views_seen)

@@ -1,22 +1,31 @@
-"""Compiled solution of the smoother's window; `smoothing.py` says what is solved.
+"""The smoother's normal equations, compiled; `smoothing.py` says what is solved.
 
 Unknowns are ordered position by position, three coordinates each. Pictures couple four neighbouring positions through cubic
-interpolation and third differences do the same, so the normal equations have a band of twelve.
+interpolation and third differences do the same, so the normal equations have a band of twelve. A picture's time, and with it the
+interpolation, is the same for all joints, which are therefore the innermost index of every array.
+
+Blocks of the equations between two positions are symmetric: six numbers stand for nine (`_PACKED`).
 """
+
+from typing import Final
 
 import numpy as np
 
-from models.arrays import Bool, Float, UInt32
+from models.arrays import Bool, Float
 from services.fusion.compiled import Counts, compiled
 
-_BAND = 12
-"""Sub-diagonals and the diagonal."""
+BAND: Final = 12
+"""The diagonal and what is above it."""
+_PACKED: Final = np.array(((0, 1, 2), (1, 3, 4), (2, 4, 5)))
+"""Where an element of a symmetric 3 x 3 block is kept."""
 _LEAST_SHARE = 0.02
 """No difference, however large, loses more of its penalty."""
 _NEGLIGIBLE = 0.03
 """A point of less than this share (squared) of its weight is 17 sigmas off and left out."""
 _OPEN_SHARE = 0.03
 """Penalty of differences beyond the newest picture. Extrapolation makes them look small, which is no evidence that they are."""
+_PRIOR_M2 = 1.0
+"""A metre of doubt about what was there before keeps what no picture and no neighbour holds in its place."""
 
 
 @compiled
@@ -29,115 +38,157 @@ def _cubic(u: float, weights: Float) -> None:
 
 
 @compiled
-def _add_picture(
-    band: Float,
-    right: Float,
-    x: Float,
-    place: float,
-    projection: Float,
-    pixel: Float,
-    variance: float,
-    scale2: float,
-    scratch: Float,
-) -> None:
-    """Linearised robust data term of one point of one picture, taken `place` knots into the window."""
-    weights, point, block, pull = scratch[0], scratch[1], scratch[2:5], scratch[5]
-    base = min(max(int(place) - 1, 0), x.shape[0] - 4)
-    _cubic(place - base, weights)
-    for k in range(3):
-        point[k] = weights[0] * x[base, k] + weights[1] * x[base + 1, k] + weights[2] * x[base + 2, k] + weights[3] * x[base + 3, k]
-    w = projection[2, 0] * point[0] + projection[2, 1] * point[1] + projection[2, 2] * point[2] + projection[2, 3]
-    if w <= 1e-6:
-        return
-    u = (projection[0, 0] * point[0] + projection[0, 1] * point[1] + projection[0, 2] * point[2] + projection[0, 3]) / w
-    v = (projection[1, 0] * point[0] + projection[1, 1] * point[1] + projection[1, 2] * point[2] + projection[1, 3]) / w
-    du, dv = pixel[0] - u, pixel[1] - v
-    share = scale2 / ((du * du + dv * dv) / variance + scale2)
-    weight = share * share / variance
-    if share < _NEGLIGIBLE:
-        return
-    for k in range(3):
-        along_u = (projection[0, k] - u * projection[2, k]) / w
-        along_v = (projection[1, k] - v * projection[2, k]) / w
-        pull[k] = weight * (along_u * du + along_v * dv)
-        for m in range(3):
-            block[k, m] = weight * (
-                along_u * (projection[0, m] - u * projection[2, m]) / w + along_v * (projection[1, m] - v * projection[2, m]) / w
-            )
-            pull[k] += block[k, m] * point[m]
-    for a in range(4):
-        row = 3 * (base + a)
-        for k in range(3):
-            right[row + k] += weights[a] * pull[k]
-            for m in range(k + 1):
-                band[row + k, k - m] += weights[a] * weights[a] * block[k, m]
-        for b in range(a):
-            factor = weights[a] * weights[b]
-            for k in range(3):
-                for m in range(3):
-                    band[row + k, 3 * (a - b) + k - m] += factor * block[k, m]
+def _linearise(point: Float, projection: Float, pixels: Float, sigma: Float, usable: Bool, scale2: float, terms: Float) -> None:
+    """Robust data terms of all joints in one picture: packed blocks of the Hessian, then its product with where to go.
+
+    Args:
+        point: (3, J) where the joints are at the picture's time.
+        projection: (3, 4).
+        pixels, sigma, usable: (J, 2), (J,), (J,) of the picture.
+        scale2: of Geman-McClure's function.
+        terms: (9, J), filled.
+    """
+    p = projection
+    for j in range(point.shape[1]):
+        x, y, z = point[0, j], point[1, j], point[2, j]
+        depth = p[2, 0] * x + p[2, 1] * y + p[2, 2] * z + p[2, 3]
+        seen = usable[j] and depth > 1e-6
+        per_depth = 1.0 / (depth if seen else 1.0)
+        u = (p[0, 0] * x + p[0, 1] * y + p[0, 2] * z + p[0, 3]) * per_depth
+        v = (p[1, 0] * x + p[1, 1] * y + p[1, 2] * z + p[1, 3]) * per_depth
+        du = pixels[j, 0] - u if seen else 0.0
+        dv = pixels[j, 1] - v if seen else 0.0
+        variance = sigma[j] * sigma[j]
+        share = scale2 * variance / (du * du + dv * dv + scale2 * variance)
+        weight = share * share / variance if seen and share >= _NEGLIGIBLE else 0.0
+        u0, u1, u2 = (p[0, 0] - u * p[2, 0]) * per_depth, (p[0, 1] - u * p[2, 1]) * per_depth, (p[0, 2] - u * p[2, 2]) * per_depth
+        v0, v1, v2 = (p[1, 0] - v * p[2, 0]) * per_depth, (p[1, 1] - v * p[2, 1]) * per_depth, (p[1, 2] - v * p[2, 2]) * per_depth
+        to_u, to_v = du + u0 * x + u1 * y + u2 * z, dv + v0 * x + v1 * y + v2 * z
+        terms[0, j] = weight * (u0 * u0 + v0 * v0)
+        terms[1, j] = weight * (u0 * u1 + v0 * v1)
+        terms[2, j] = weight * (u0 * u2 + v0 * v2)
+        terms[3, j] = weight * (u1 * u1 + v1 * v1)
+        terms[4, j] = weight * (u1 * u2 + v1 * v2)
+        terms[5, j] = weight * (u2 * u2 + v2 * v2)
+        terms[6, j] = weight * (u0 * to_u + v0 * to_v)
+        terms[7, j] = weight * (u1 * to_u + v1 * to_v)
+        terms[8, j] = weight * (u2 * to_u + v2 * to_v)
 
 
 @compiled
 def _add_pictures(
-    band: Float,
+    blocks: Float,
     right: Float,
     x: Float,
     start: float,
     frame: float,
-    projection: Float,
+    projections: Float,
     times: Float,
-    count: int,
+    counts: Counts,
     pixels: Float,
     sigma: Float,
     usable: Bool,
     scale2: float,
-    joint: int,
-    scratch: Float,
 ) -> None:
-    """Data terms of one joint in one camera's pictures."""
-    for i in range(count):
-        place = (times[i] - start) / frame
-        if usable[i, joint] and 0.0 <= place <= x.shape[0] - 1:
-            variance = sigma[i, joint] * sigma[i, joint]
-            _add_picture(band, right, x, place, projection, pixels[i, joint], variance, scale2, scratch)
+    """Data terms of every picture within the window.
+
+    Args:
+        blocks: (knots, 4, 6, J) packed blocks between a position and the next three, added to.
+        right: (knots, 3, J) right side, added to.
+        x: (knots, 3, J) positions.
+        start, frame: time of the first position, and between two, in seconds.
+        projections, times, counts, pixels, sigma, usable: as in `Views` and `Tracks`.
+        scale2: as in `_linearise`.
+    """
+    knots, joints = x.shape[0], x.shape[2]
+    weights, point, terms = np.empty(4), np.empty((3, joints)), np.empty((9, joints))
+    hessian, pull = terms[:6].reshape(6 * joints), terms[6:].reshape(3 * joints)
+    block_rows, right_rows = blocks.reshape(knots, 4, 6 * joints), right.reshape(knots, 3 * joints)
+    for camera in range(projections.shape[0]):
+        for i in range(counts[camera]):
+            place = (times[camera, i] - start) / frame
+            if place < 0.0 or place > knots - 1:
+                continue
+            base = min(max(int(place) - 1, 0), knots - 4)
+            _cubic(place - base, weights)
+            for k in range(3):
+                for j in range(joints):
+                    point[k, j] = (
+                        weights[0] * x[base, k, j]
+                        + weights[1] * x[base + 1, k, j]
+                        + weights[2] * x[base + 2, k, j]
+                        + weights[3] * x[base + 3, k, j]
+                    )
+            _linearise(point, projections[camera], pixels[camera, i], sigma[camera, i], usable[camera, i], scale2, terms)
+            for a in range(4):
+                for n in range(3 * joints):
+                    right_rows[base + a, n] += weights[a] * pull[n]
+                for b in range(a, 4):
+                    factor = weights[a] * weights[b]
+                    for n in range(6 * joints):
+                        block_rows[base + a, b - a, n] += factor * hessian[n]
 
 
 @compiled
-def _add_differences(band: Float, x: Float, order: int, strength: float, freedom: float, held: float) -> None:
-    """Penalty on differences, heavy-tailed: Student's t of this freedom, so that a throw is not ironed out (reweighted)."""
-    knots = x.shape[0]
+def _add_differences(penalty: Float, x: Float, order: int, strength: Float, freedom: float, held: float) -> None:
+    """Penalty on differences, heavy-tailed: Student's t of this freedom, so that a throw is not ironed out (reweighted).
+
+    Args:
+        penalty: (knots, 4, J) coefficients between a position and the next three, the same for each coordinate, added to.
+        x: (knots, 3, J) positions.
+        order: of the difference.
+        strength: (J,) inverse variance of a difference.
+        freedom: of Student's t; infinite is a Gaussian.
+        held: knots that pictures reach.
+    """
+    knots, joints = x.shape[0], x.shape[2]
     stencil = np.array([-1.0, 3.0, -3.0, 1.0]) if order == 3 else np.array([1.0, -2.0, 1.0, 0.0])
+    weight = np.empty(joints)
     for first in range(knots - order):
-        size2 = 0.0
-        for k in range(3):
-            difference = 0.0
-            for a in range(order + 1):
-                difference += stencil[a] * x[first + a, k]
-            size2 += difference * difference
-        weight = strength
         if freedom < np.inf:
-            weight *= max((freedom + 3.0) / (freedom + strength * size2), _LEAST_SHARE)
-            if first + order > held:
-                weight = min(weight, _OPEN_SHARE * strength)
-        for a in range(order + 1):
-            for b in range(a + 1):
+            bound = _OPEN_SHARE if first + order > held else np.inf
+            last = min(first + 3, knots - 1)
+            for j in range(joints):
+                size2 = 0.0
                 for k in range(3):
-                    band[3 * (first + a) + k, 3 * (a - b)] += weight * stencil[a] * stencil[b]
+                    size2 += (
+                        stencil[0] * x[first, k, j]
+                        + stencil[1] * x[first + 1, k, j]
+                        + stencil[2] * x[first + 2, k, j]
+                        + stencil[3] * x[last, k, j]
+                    ) ** 2
+                share = max((freedom + 3.0) / (freedom + strength[j] * size2), _LEAST_SHARE)
+                weight[j] = strength[j] * min(share, bound)
+        else:
+            weight[:] = strength
+        for a in range(order + 1):
+            for b in range(a, order + 1):
+                factor = stencil[a] * stencil[b]
+                for j in range(joints):
+                    penalty[first + a, b - a, j] += factor * weight[j]
 
 
 @compiled
 def _add_limb(
-    band: Float, right: Float, x: Float, other: Float, known: Bool, length: float, sigma: float, spread: Float, scale2: float
+    blocks: Float,
+    right: Float,
+    x: Float,
+    known: Bool,
+    j: int,
+    other: int,
+    length: float,
+    sigma: float,
+    spread: Float,
+    scale2: float,
 ) -> None:
-    """Pull every position onto the limb's length from its other end, along the limb only."""
+    """Pull every position of a joint onto the limb's length from its other end, along the limb only."""
     direction = np.empty(3)
     for knot in range(x.shape[0]):
-        if not known[knot]:
+        if not known[other, knot]:
             continue
         distance = 0.0
         for k in range(3):
-            direction[k] = x[knot, k] - other[knot, k]
+            direction[k] = x[knot, k, j] - x[knot, k, other]
             distance += direction[k] ** 2
         distance = np.sqrt(distance)
         if distance < 1e-3:
@@ -152,105 +203,67 @@ def _add_limb(
         variance *= (1.0 + (distance - length) ** 2 / (scale2 * variance)) ** 2
         along = length
         for k in range(3):
-            along += direction[k] * other[knot, k]
+            along += direction[k] * x[knot, k, other]
         for k in range(3):
-            right[3 * knot + k] += direction[k] * along / variance
-            for m in range(3):
-                if m <= k:
-                    band[3 * knot + k, k - m] += direction[k] * direction[m] / variance
+            right[knot, k, j] += direction[k] * along / variance
+            for m in range(k, 3):
+                blocks[knot, 0, _PACKED[k, m], j] += direction[k] * direction[m] / variance
 
 
 @compiled
-def _factor(band: Float) -> None:
-    """Banded Cholesky in place: band[i, d] becomes L[i, i - d]."""
-    size, width = band.shape
-    for i in range(size):
-        for j in range(max(0, i - width + 1), i + 1):
-            total = band[i, i - j]
-            for k in range(max(0, i - width + 1), j):
-                total -= band[i, i - k] * band[j, j - k]
-            band[i, i - j] = np.sqrt(max(total, 1e-9)) if i == j else total / band[j, 0]
-
-
-@compiled
-def _solve(band: Float, right: Float, first: int) -> None:
-    """Solve in place with a factored band, for a right side that is zero before `first`; what comes before it is left out."""
-    size, width = band.shape
-    for i in range(first, size):
-        total = right[i]
-        for k in range(max(first, i - width + 1), i):
-            total -= band[i, i - k] * right[k]
-        right[i] = total / band[i, 0]
-    for i in range(size - 1, first - 1, -1):
-        total = right[i]
-        for k in range(i + 1, min(size, i + width)):
-            total -= band[k, k - i] * right[k]
-        right[i] = total / band[i, 0]
-
-
-@compiled
-def _agreeing(
+def _add_limbs(
+    blocks: Float,
+    right: Float,
     x: Float,
-    start: float,
-    frame: float,
-    projections: Float,
-    times: Float,
-    counts: Counts,
-    pixels: Float,
-    sigma: Float,
-    usable: Bool,
-    joint: int,
-    instant: float,
-    memory: float,
-) -> int:
-    """Bits of the cameras with a picture near the instant whose residual is within chi-square's 99 %."""
-    point, bits = np.empty(3), 0
-    for camera in range(projections.shape[0]):
-        for i in range(counts[camera]):
-            place = (times[camera, i] - start) / frame
-            if not usable[camera, i, joint] or abs(times[camera, i] - instant) > memory or place < 0.0 or place > x.shape[0] - 1:
-                continue
-            _read(x, place, point)
-            p = projections[camera]
-            w = p[2, 0] * point[0] + p[2, 1] * point[1] + p[2, 2] * point[2] + p[2, 3]
-            if w > 1e-6:
-                du = pixels[camera, i, joint, 0] - (p[0, 0] * point[0] + p[0, 1] * point[1] + p[0, 2] * point[2] + p[0, 3]) / w
-                dv = pixels[camera, i, joint, 1] - (p[1, 0] * point[0] + p[1, 1] * point[1] + p[1, 2] * point[2] + p[1, 3]) / w
-                if du * du + dv * dv <= 9.21 * sigma[camera, i, joint] ** 2:
-                    bits |= 1 << camera
-                    break
-    return bits
+    known: Bool,
+    ends: Counts,
+    lengths: Float,
+    length_sigmas: Float,
+    spread: Float,
+    scale2: float,
+) -> None:
+    """Hold both ends of each limb whose length is known (not 0) at that length from each other.
+
+    Args:
+        blocks, right, x, scale2: as in `_add_pictures`.
+        known: (J, knots) positions that hold anything.
+        ends, lengths, length_sigmas: (L, 2), (L,), (L,) of the limbs.
+        spread: (J, 3, 3) what is known of a joint, as seen from the other end.
+    """
+    for limb in range(ends.shape[0]):
+        if lengths[limb] > 0.0:
+            a, b = ends[limb]
+            _add_limb(blocks, right, x, known, a, b, lengths[limb], length_sigmas[limb], spread[b], scale2)
+            _add_limb(blocks, right, x, known, b, a, lengths[limb], length_sigmas[limb], spread[a], scale2)
 
 
 @compiled
-def _read(x: Float, place: float, out: Float) -> None:
-    """Position at a place of the window, in knots."""
-    weights = np.empty(4)
-    base = min(max(int(place) - 1, 0), x.shape[0] - 4)
-    _cubic(place - base, weights)
-    for k in range(3):
-        out[k] = weights[0] * x[base, k] + weights[1] * x[base + 1, k] + weights[2] * x[base + 2, k] + weights[3] * x[base + 3, k]
+def _unpack(blocks: Float, penalty: Float, x: Float, right: Float, matrix: Float) -> None:
+    """Write packed blocks (knots, 4, 6, J) and penalties (knots, 4, J) as the banded matrix (3 knots, band, J), with the prior."""
+    knots, joints = x.shape[0], x.shape[2]
+    for knot in range(knots):
+        for k in range(3):
+            row = 3 * knot + k
+            for ahead in range(4):
+                for m in range(3):
+                    d = 3 * ahead + m - k
+                    if d < 0:
+                        continue
+                    for j in range(joints):
+                        matrix[row, d, j] = blocks[knot, ahead, _PACKED[k, m], j]
+                    if k == m:
+                        for j in range(joints):
+                            matrix[row, d, j] += penalty[knot, ahead, j]
+            for j in range(joints):
+                matrix[row, 0, j] += _PRIOR_M2
+                right[knot, k, j] += _PRIOR_M2 * x[knot, k, j]
+            for d in range(BAND - k, BAND):
+                matrix[row, d] = 0.0
 
 
 @compiled
-def _read_carried(x: Float, place: float, held: float, carry: float, out: Float) -> None:
-    """As `_read`, but beyond what pictures hold, carried on with the velocity there, which dies away."""
-    steady = held - 0.5
-    if place <= steady or steady < 1.0:
-        _read(x, place, out)
-        return
-    before, after = np.empty(3), np.empty(3)
-    _read(x, steady - 0.25, before)
-    _read(x, steady + 0.25, after)
-    _read(x, steady, out)
-    reach = carry * (1.0 - np.exp(-(place - steady) / carry))
-    for k in range(3):
-        out[k] += 2.0 * (after[k] - before[k]) * reach
-
-
-@compiled
-def smooth_window(
-    positions: Float,
+def assemble(
+    x: Float,
     known: Bool,
     start: float,
     frame: float,
@@ -265,60 +278,25 @@ def smooth_window(
     freedom: float,
     bend: Float,
     scale2: float,
-    iterations: int,
     ends: Counts,
     lengths: Float,
     length_sigmas: Float,
     spread: Float,
     held: float,
-    carry: float,
-    instants: Float,
-    memories: Float,
-) -> tuple[Float, Float, UInt32]:
-    """The kernel of `Smoother.step`: positions are improved in place; what is read at the instants comes back."""
-    joints, knots, reads = positions.shape[0], positions.shape[1], instants.shape[0]
-    points, covariance = np.zeros((reads, joints, 3)), np.zeros((reads, joints, 3, 3))
-    views = np.zeros((reads, joints), np.uint32)
-    band, right, scratch = np.empty((3 * knots, _BAND)), np.empty(3 * knots), np.empty((6, 4))
-    for j in range(joints):
-        if not known[j].any():
-            continue
-        x = positions[j]
-        for _ in range(iterations):
-            band[:] = 0.0
-            right[:] = 0.0
-            for camera in range(projections.shape[0]):
-                pictures = times[camera], counts[camera], pixels[camera], sigma[camera], usable[camera]
-                _add_pictures(band, right, x, start, frame, projections[camera], *pictures, scale2, j, scratch)
-            _add_differences(band, x, order, strength[j], freedom, held)
-            _add_differences(band, x, 2, bend[j], np.inf, held)
-            for limb in range(ends.shape[0]):
-                if lengths[limb] > 0.0 and (ends[limb, 0] == j or ends[limb, 1] == j):
-                    other = ends[limb, 1] if ends[limb, 0] == j else ends[limb, 0]
-                    _add_limb(
-                        band, right, x, positions[other], known[other], lengths[limb], length_sigmas[limb], spread[other], scale2
-                    )
-            # A metre of doubt about what was there before keeps what no picture and no neighbour holds in its place.
-            for i in range(3 * knots):
-                band[i, 0] += 1.0
-                right[i] += x[i // 3, i % 3]
-            _factor(band)
-            _solve(band, right, 0)
-            for i in range(3 * knots):
-                x[i // 3, i % 3] = right[i]
-        known[j] = True
-        for read in range(reads):
-            place = (instants[read] - start) / frame
-            _read_carried(x, place, held, carry, points[read, j])
-            # The later of the two positions around the instant is the less certain one.
-            knot = min(int(np.ceil(place - 1e-6)), knots - 1)
-            for k in range(3):
-                right[3 * knot :] = 0.0
-                right[3 * knot + k] = 1.0
-                _solve(band, right, 3 * knot)
-                for m in range(3):
-                    covariance[read, j, m, k] = right[3 * knot + m]
-            views[read, j] = _agreeing(
-                x, start, frame, projections, times, counts, pixels, sigma, usable, j, instants[read], memories[read]
-            )
-    return points, covariance, views
+    blocks: Float,
+    penalty: Float,
+    matrix: Float,
+    right: Float,
+) -> None:
+    """The normal equations of all joints, linearised at `x`, into `matrix` (3 knots, band, J) and `right` (knots, 3, J).
+
+    `blocks` and `penalty` are room to work in.
+    """
+    blocks[:] = 0.0
+    penalty[:] = 0.0
+    right[:] = 0.0
+    _add_pictures(blocks, right, x, start, frame, projections, times, counts, pixels, sigma, usable, scale2)
+    _add_differences(penalty, x, order, strength, freedom, held)
+    _add_differences(penalty, x, 2, bend, np.inf, held)
+    _add_limbs(blocks, right, x, known, ends, lengths, length_sigmas, spread, scale2)
+    _unpack(blocks, penalty, x, right, matrix)
