@@ -62,14 +62,14 @@ def camera_status(name: str, heard: HeardHealth | None, presence: Presence, used
 
 
 def _judge(heard: HeardHealth | None, presence: Presence, now_ns: int) -> tuple[CameraState, CameraReason]:
+    if heard is not None and heard.health.state == "failed":
+        return "lost", "failed"
     if presence.alive is False:
         return "lost", "process_gone"
     if heard is None or heard.health.camera is None:
         return ("starting", "starting") if now_ns - presence.since_ns < START_GRACE_NS else ("lost", "never_seen")
     if now_ns - heard.arrived_ns > SILENT_AFTER_NS:
         return "lost", "silent"
-    if heard.health.state == "failed":
-        return "lost", "failed"
     return _judge_rates(heard.health.camera, heard.health.state == "degraded")
 
 

@@ -103,6 +103,15 @@ def test_a_camera_whose_process_ends_is_lost_at_once_and_starts_anew() -> None:
     assert judged(state, T0 + 62 * S) == ("ok", "none")
 
 
+def test_a_camera_that_the_supervisor_gave_up_says_why_instead_of_starting_for_ever() -> None:
+    state = room()
+    state.receive_health(Health("edge-a", 3, T0, "failed", "camera 'a': a.avi is missing", 0.0, 0.0), T0 + S)
+    assert judged(state, T0 + S) == ("lost", "failed")
+    assert camera(state, T0 + S).detail == "camera 'a': a.avi is missing"
+    state.set_alive("edge-a", False, T0 + S)
+    assert judged(state, T0 + S) == ("lost", "failed")
+
+
 def test_rate_and_latency_are_those_of_the_last_seconds() -> None:
     state = room()
     for frame in range(150):
