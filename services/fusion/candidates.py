@@ -29,9 +29,9 @@ class Candidates:
         """Take a sighting into its track; a new track replaces the one that was seen longest ago."""
         row = self.identities[sighting.camera]
         base = sighting.camera * PERSONS
-        same = np.flatnonzero(row == sighting.track)
-        if same.size:
-            slot = base + int(same[0])
+        numbers = row.tolist()
+        if sighting.track in numbers:
+            slot = base + numbers.index(sighting.track)
         else:
             newest = [self.tracks.newest_s(base + i) for i in range(PERSONS)]
             slot = base + int(np.argmin(newest))

@@ -14,8 +14,6 @@ ENDS: Final[Counts] = np.array(list(coco.LIMBS.values()), np.int64)
 
 _MIN_SAMPLES = 10
 _MAX_SIGMA_M = 0.05
-_IMPOSSIBLE = 0.4
-"""Share by which a limb may differ from its length before its far end is not believed."""
 
 
 class LimbLengths:
@@ -31,15 +29,6 @@ class LimbLengths:
     def current(self) -> tuple[Float, Float]:
         """(8,) lengths and (8,) sigmas in metres, not to be changed; a length of 0 is not known yet."""
         return self._lengths, self._sigmas
-
-    def impossible(self, points_m: Float) -> Bool:
-        """(17,) joints at the far end of a limb whose length is nowhere near what was learnt."""
-        lengths, _ = self.current()
-        apart = np.linalg.norm(points_m[ENDS[:, 0]] - points_m[ENDS[:, 1]], axis=1)
-        wrong = (lengths > 0) & (np.abs(apart - lengths) > _IMPOSSIBLE * lengths)
-        out = np.zeros(coco.COUNT, np.bool_)
-        out[ENDS[wrong, 1]] = True
-        return out
 
     def learn(self, points_m: Float, covariance_m2: Float, seen: Bool) -> None:
         """Take in joints (17, 3) with covariance (17, 3, 3) of which `seen` (17,) can be measured at."""

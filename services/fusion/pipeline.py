@@ -4,6 +4,7 @@ An event is an observation, as it arrives, or a tick of the output's clock. The 
 bit, so a recorded lesson replays through this code. The state is changed in place and belongs to the caller of `step`.
 """
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,8 +16,8 @@ from models.messages.observation import Observation
 from models.skeleton import coco
 from services.fusion.config import FusionConfig
 from services.fusion.prediction import predict_crop
-from services.fusion.pupil import Pose
 from services.fusion.reconstruction import Reconstruction
+from services.fusion.verdict import Pose
 from services.fusion.views import Views, sightings
 
 _NOBODY = Pose(
@@ -165,10 +166,10 @@ def _motions(state: FusionState, now_s: float, config: FusionConfig) -> tuple[Mo
 
 
 def _motion(state: FusionState, kind: str, reconstruction: Reconstruction, t_s: float, pose: Pose) -> Motion:
-    newest = reconstruction.newest_s
+    newest_s = reconstruction.newest_s.tolist()
     used = int(np.bitwise_or.reduce(pose.views))
-    ages_ms = np.where(np.isfinite(newest), (t_s - newest) * 1e3, np.nan)
-    cameras = tuple(CameraUse(name, bool((used >> i) & 1), float(ages_ms[i])) for name, i in state.views.index.items())
+    ages_ms = [(t_s - newest) * 1e3 if newest > -math.inf else math.nan for newest in newest_s]
+    cameras = tuple(CameraUse(name, bool((used >> i) & 1), ages_ms[i]) for name, i in state.views.index.items())
     sequence = state.sequences[kind]
     state.sequences[kind] = sequence + 1
     return Motion(
@@ -176,7 +177,7 @@ def _motion(state: FusionState, kind: str, reconstruction: Reconstruction, t_s: 
         sequence=sequence,
         epoch=reconstruction.epoch,
         t_ns=round(t_s * 1e9),
-        t_newest_ns=round(float(newest.max()) * 1e9),
+        t_newest_ns=round(max(newest_s) * 1e9),
         t_published_ns=state.tick_ns,
         joints_m=pose.joints_m.astype(np.float32),
         covariance_m2=pose.covariance_m2.astype(np.float32),

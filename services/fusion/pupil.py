@@ -1,42 +1,31 @@
 """The chosen person: every picture of him or her is fused here, and asked for here at any instant."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from models.arrays import Bool, Float, UInt8, UInt32
-from models.messages.motion import JointState
+from models.arrays import Bool, Float, UInt32
 from models.skeleton import coco
 from services.fusion.association import Familiar, pick_pupil
-from services.fusion.body_filter import BodyFilter
+from services.fusion.body_filter import BodyFilter, centre_in_picture
 from services.fusion.compiled import Counts
 from services.fusion.config import FusionConfig
 from services.fusion.history import FilterHistory, Seed
 from services.fusion.joint_filter import Expectation
-from services.fusion.limbs import LimbLengths
+from services.fusion.limbs import ENDS, LimbLengths
 from services.fusion.singer import separations2
 from services.fusion.smoothing import Smoother
 from services.fusion.swap import repair
 from services.fusion.timing import Tracks
 from services.fusion.triangulation import Triangulated, triangulate
+from services.fusion.verdict import Pose, judge_joints
 from services.fusion.views import Sighting, Views
 
+_TRUNK = np.array(coco.TRUNK)
 _TRACK_DEPTH = 32
 _REACH_M = 1.3
 """No joint is further from the body's centre."""
 _SEED_SIGMA_M = 0.02
 """Added to a seed's sigma, for what triangulation at an interpolated instant does not know of."""
 _STALE_S = 0.2
-
-
-@dataclass(frozen=True, eq=False)
-class Pose:
-    """The joints at one instant: arrays as in `Motion`, in float64; what is unknown carries no numbers."""
-
-    joints_m: Float
-    covariance_m2: Float
-    states: UInt8
-    views: UInt32
 
 
 class Pupil:
@@ -58,6 +47,7 @@ class Pupil:
         self._filters = FilterHistory(t_s, views, config.filter)
         self._limbs = LimbLengths(config.smoothing)
         self._agreed_s: Float = np.full((len(views), coco.COUNT), -np.inf)
+        self._repaired = [False] * len(views)
         self._swapped: Bool = np.zeros((len(views), coco.COUNT), np.bool_)
         self._doubted_s: Float = np.full(coco.COUNT, np.inf)
         self._disagreements: Counts = np.zeros(coco.COUNT, np.int64)
@@ -93,29 +83,24 @@ class Pupil:
         self.misses[camera] = 0
         self._identities[camera] = found.track
         sighting, swapped = repair(found, expected)
+        repaired = sighting is not found
         if not self._tracks.add(camera, sighting):
             return
         innovation = self._filters.observe(sighting, predicted)
         if innovation is not None:
             agreed = self._agreed_s[camera]
             agreed[innovation.used & (agreed < t_s)] = t_s
-        self._doubt_sides(camera, t_s, swapped)
+        if repaired or self._repaired[camera]:
+            self._doubt_sides(camera, t_s, swapped)
+        self._repaired[camera] = repaired
         self._see_body(t_s, projection, sighting, expected)
 
     def _see_body(self, t_s: float, projection: Float, sighting: Sighting, expected: Expectation) -> None:
-        """Measure the body's centre; a hidden corner of the trunk is taken to be where it is expected."""
-        total, sigma, seen = np.zeros(2), 1.0, 0
-        for joint in coco.TRUNK:
-            if sighting.usable[joint]:
-                total += sighting.points_px[joint]
-                sigma = max(sigma, float(sighting.sigma_px[joint]))
-                seen += 1
-            elif expected.known[joint]:
-                total += expected.points_px[joint]
-            else:
-                return
-        if seen >= 2:
-            self.body.observe(t_s, projection, 0.25 * total, sigma)
+        """Measure the body's centre."""
+        seen = sighting.points_px, sighting.sigma_px, sighting.usable
+        u, v, sigma_px = centre_in_picture(*seen, expected.points_px, expected.known, _TRUNK)
+        if sigma_px < np.inf:
+            self.body.observe(t_s, projection, np.array((u, v)), sigma_px)
 
     def check(self, config: FusionConfig) -> None:
         """Hold the filters against triangulation at the newest instant that all cameras reach, and give up what nobody sees."""
@@ -188,27 +173,15 @@ class Pupil:
         self, t_s: float, points_m: Float, covariance_m2: Float, views: UInt32, agreed_s: Float, config: FusionConfig
     ) -> Pose:
         """States from how many views agree now, and from when two last did (`agreed_s`, kept up to date here)."""
-        agreeing = np.bitwise_count(views)
-        agreed_s[agreeing >= 2] = t_s
-        recent = t_s - agreed_s <= config.filter.guess_s + 1e-9
-        certain = np.einsum("jii->j", covariance_m2) <= config.filter.max_sigma_m**2
-        known = recent & certain & (t_s >= self.since_s - config.frame_s)
-        # Two views can agree on a wrong point; they cannot lengthen a forearm.
-        seen = (agreeing >= 2) & ~self._limbs.impossible(points_m)
-        states = np.where(known, np.where(seen, JointState.SEEN, JointState.GUESSED), JointState.UNKNOWN)
-        return Pose(
-            np.where(known[:, None], points_m, 0.0),
-            np.where(known[:, None, None], covariance_m2, 0.0),
-            states.astype(np.uint8),
-            np.where(known, views, 0).astype(np.uint32),
-        )
+        # Before the first estimate nothing is known, however sure the window's end is.
+        guess_s = config.filter.guess_s + 1e-9 if t_s >= self.since_s - config.frame_s else -np.inf
+        lengths_m, _ = self._limbs.current()
+        max_variance_m2 = config.filter.max_sigma_m**2
+        return Pose(*judge_joints(points_m, covariance_m2, views, agreed_s, t_s, guess_s, max_variance_m2, ENDS, lengths_m))
 
     def _doubt_sides(self, camera: int, t_s: float, swapped: Bool) -> None:
         """If most cameras keep having to be repaired, it is the estimate whose left is right."""
-        before = self._swapped[camera].any()
         self._swapped[camera] = swapped
-        if not (before or swapped.any()):
-            return
         fresh = [c for c in range(len(self._views)) if self._tracks.newest_s(c) >= t_s - _STALE_S]
         most = 2 * self._swapped[fresh].sum(axis=0) > len(fresh)
         self._doubted_s = np.where(most, np.minimum(self._doubted_s, t_s), np.inf)
