@@ -145,7 +145,7 @@ class SmoothingConfig:
     """
 
     order: Literal[2, 3] = 3
-    difference_m: Float = field(default_factory=lambda: by_distance_from_trunk(0.003, 0.005, 0.040))
+    difference_m: Float = field(default_factory=lambda: by_distance_from_trunk(0.003, 0.005, 0.025))
     difference_freedom: float = 2.0
     carry_s: float = 0.10
     bend_m: Float = field(default_factory=lambda: by_distance_from_trunk(0.03, 0.06, 0.15))
