@@ -6,7 +6,7 @@ import numpy as np
 
 from models.arrays import Bool, Float
 from models.skeleton import coco
-from services.fusion.compiled import Counts
+from services.fusion.compiled import Counts, compiled
 from services.fusion.config import SmoothingConfig
 
 ENDS: Final[Counts] = np.array(list(coco.LIMBS.values()), np.int64)
@@ -14,6 +14,7 @@ ENDS: Final[Counts] = np.array(list(coco.LIMBS.values()), np.int64)
 
 _MIN_SAMPLES = 10
 _MAX_SIGMA_M = 0.05
+_MIN_LENGTH_M = 0.05
 
 
 class LimbLengths:
@@ -32,24 +33,42 @@ class LimbLengths:
 
     def learn(self, points_m: Float, covariance_m2: Float, seen: Bool) -> None:
         """Take in joints (17, 3) with covariance (17, 3, 3) of which `seen` (17,) can be measured at."""
-        a, b = ENDS[:, 0], ENDS[:, 1]
-        apart = points_m[a] - points_m[b]
-        distance = np.linalg.norm(apart, axis=1)
-        spread = covariance_m2[a] + covariance_m2[b]
-        total = np.einsum("lii->l", spread)
-        sure = seen[a] & seen[b] & (total < 2 * _MAX_SIGMA_M**2) & (distance > 0.05)
-        direction = apart / np.maximum(distance, 1e-6)[:, None]
-        across = total - np.einsum("li,lij,lj->l", direction, spread, direction)
-        # Noise across a limb always lengthens it: E|d + n| is |d| + variance across / 2 |d|.
-        unbiased = distance - across / (2 * np.maximum(distance, 0.05))
-        self._samples[:, self._next] = np.where(sure, unbiased, np.nan)
+        measure_limbs(points_m, covariance_m2, seen, ENDS, self._samples[:, self._next])
         self._next = (self._next + 1) % self._samples.shape[1]
         if np.isfinite(self._config.limb_sigma):
-            self._measure()
+            self._lengths, self._sigmas = median_lengths(self._samples, self._config.limb_sigma)
 
-    def _measure(self) -> None:
-        ordered = np.sort(self._samples, axis=1)
-        count = np.isfinite(ordered).sum(axis=1)
-        middle = ordered[np.arange(len(ENDS)), np.maximum(count - 1, 0) // 2]
-        self._lengths = np.where(count >= _MIN_SAMPLES, middle, 0.0)
-        self._sigmas = np.where(count >= _MIN_SAMPLES, self._config.limb_sigma * middle, 1.0)
+
+@compiled
+def measure_limbs(points: Float, covariance: Float, seen: Bool, ends: Counts, out: Float) -> None:
+    """(L,) lengths of limbs at one instant, NaN where an end is not seen or not sure: the kernel of `LimbLengths.learn`."""
+    direction = np.empty(3)
+    for limb in range(ends.shape[0]):
+        a, b = ends[limb]
+        out[limb] = np.nan
+        distance2 = total = 0.0
+        for k in range(3):
+            direction[k] = points[a, k] - points[b, k]
+            distance2 += direction[k] ** 2
+            total += covariance[a, k, k] + covariance[b, k, k]
+        if not (seen[a] and seen[b] and total < 2 * _MAX_SIGMA_M**2 and distance2 > _MIN_LENGTH_M**2):
+            continue
+        across = total
+        for k in range(3):
+            for m in range(3):
+                across -= direction[k] * (covariance[a, k, m] + covariance[b, k, m]) * direction[m] / distance2
+        # Noise across a limb always lengthens it: E|d + n| is |d| + variance across / 2 |d|.
+        distance = np.sqrt(distance2)
+        out[limb] = distance - across / (2 * distance)
+
+
+@compiled
+def median_lengths(samples: Float, relative_sigma: float) -> tuple[Float, Float]:
+    """(L,) medians of the samples (L, n) that are not NaN, 0 if they are few, and their sigmas."""
+    lengths, sigmas = np.zeros(samples.shape[0]), np.ones(samples.shape[0])
+    for limb in range(samples.shape[0]):
+        measured = np.sort(samples[limb][~np.isnan(samples[limb])])
+        if measured.shape[0] >= _MIN_SAMPLES:
+            lengths[limb] = measured[(measured.shape[0] - 1) // 2]
+            sigmas[limb] = relative_sigma * lengths[limb]
+    return lengths, sigmas

@@ -7,8 +7,8 @@ minimises
 
 where X(t) is cubic interpolation between the positions around the picture's own time t, D^n the n-th difference, and the last
 term holds the distance to the joint Y at the limb's other end near the limb's length L (eq. 16, with q from what is known of Y).
-One reweighted Gauss-Newton step a tick is a banded Cholesky solution, linear in the window's length; a position is stepped on in
-every tick that it is in the window, so it is read out after at least seven.
+One reweighted Gauss-Newton step a tick is a banded solution, linear in the window's length, of all joints at once: Y is where the
+step before left it. A position is stepped on in every tick that it is in the window, so it is read out after at least seven.
 """
 
 from dataclasses import dataclass
