@@ -2,7 +2,8 @@
 
 Four sources play in real time, all processes run, and a socket client (this process; no rendering browser) receives the
 live figure as a tablet would and acknowledges it. Fresh inferences are counted on the bus from the observations themselves,
-so that interpolation can't fake them. Then the same confined to one core.
+so that interpolation can't fake them. No figure is measured across a seam of the looping footage, but for
+`live_fps.with_seams`. Then the same confined to one core. Whole ticks are counted, so 30 a second is judged to a tenth.
 """
 
 import argparse
@@ -12,6 +13,7 @@ import os
 import signal
 import statistics
 import subprocess
+import sys
 import threading
 import time
 from collections import defaultdict
@@ -36,21 +38,39 @@ from tests.bench.report import Report
 
 WARM_S = 60
 MIN_JOINTS_SEEN = 9
-"""A motion counts as a fused pose if more than half of the joints were seen by two views."""
+FRAME_NS = 33_333_333
+SEAM_FRAMES = 10
 BARS = {
-    "live_fps": (">=", 30.0),
+    "live_fps": (">=", 29.95),
     "fresh_hz.min": (">=", 10.0),
     "latency_ms.p95": ("<=", 250.0),
     "rss_growth_pct": ("<=", 2.0),
+    "half_quota.live_fps": (">=", 29.95),
     "half_quota.fresh_hz.min": (">=", 5.0),
 }
+
+
+@dataclass(frozen=True)
+class LiveMotion:
+    """One live motion as the client received it; CLOCK_MONOTONIC."""
+
+    received_ns: int
+    newest_ns: int
+    epoch: int
+    t_ns: int
+    joints_seen: int
+
+    @property
+    def is_pose(self) -> bool:
+        """Whether more than half of the joints were seen by two views."""
+        return self.joints_seen >= MIN_JOINTS_SEEN
 
 
 @dataclass
 class Heard:
     """Everything that was measured while listening, with the time of receipt in monotonic nanoseconds."""
 
-    motions: list[tuple[int, int, int]] = field(default_factory=list)  # receipt, newest observation, joints seen
+    motions: list[LiveMotion] = field(default_factory=list)
     frames: dict[str, set[tuple[int, int]]] = field(default_factory=lambda: defaultdict(set))  # (epoch, frame) per camera
     stage_ms: dict[str, list[float]] = field(default_factory=lambda: defaultdict(list))
     edge_total_ms: list[float] = field(default_factory=list)
@@ -92,7 +112,7 @@ def running_box(site: Path, data: Path, cpus: set[int] | None) -> Iterator[psuti
     log = data / "bench" / "box.log"
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("wb") as output:
-        command = ["kinebox", "run", "--site", str(site), "--data", str(data)]
+        command = [sys.executable, "-m", "services.cli.main", "run", "--site", str(site), "--data", str(data)]
         if cpus is not None:
             command = ["taskset", "-c", ",".join(map(str, sorted(cpus))), *command]
         popen = subprocess.Popen(command, stdout=output, stderr=output, start_new_session=True)
@@ -118,7 +138,8 @@ def watch_page(url: str, heard: Heard, stop: threading.Event) -> None:
                     now_ns = time.monotonic_ns()
                     if isinstance(message, bytes):
                         frame = motion_frame.unpack(message)
-                        heard.motions.append((now_ns, frame.t_newest_ns, int((frame.states == JointState.SEEN).sum())))
+                        seen = int((frame.states == JointState.SEEN).sum())
+                        heard.motions.append(LiveMotion(now_ns, frame.t_newest_ns, frame.epoch, frame.t_ns, seen))
                         counts["motions"] += 1
                     else:
                         counts["statuses"] += 1
@@ -196,11 +217,12 @@ def cpu_seconds(box: psutil.Process) -> float:
 
 def summary(heard: Heard, memory: Memory, elapsed_s: float, cpu_s: float) -> dict[str, float]:
     """Figures under their fixed names."""
-    poses = [motion for motion in heard.motions if motion[2] >= MIN_JOINTS_SEEN]
-    latency = np.array([(receipt - newest) * 1e-6 for receipt, newest, _ in poses])
+    poses = [motion for motion in heard.motions if motion.is_pose]
+    latency = np.array([(motion.received_ns - motion.newest_ns) * 1e-6 for motion in poses])
     fresh = {name: len(frames) / elapsed_s for name, frames in heard.frames.items()}
     figures = {
-        "live_fps": len(poses) / elapsed_s,
+        "live_fps": between_seams_hz(heard.motions),
+        "live_fps.with_seams": len(poses) / elapsed_s,
         "motions_per_s": len(heard.motions) / elapsed_s,
         "fresh_hz.min": min(fresh.values(), default=float("nan")),
         **{f"fresh_hz.{name}": rate for name, rate in sorted(fresh.items())},
@@ -214,6 +236,21 @@ def summary(heard: Heard, memory: Memory, elapsed_s: float, cpu_s: float) -> dic
     if len(latency):
         figures |= {f"latency_ms.p{q}": float(np.percentile(latency, q)) for q in (50, 95, 99)}
     return figures
+
+
+def between_seams_hz(motions: list[LiveMotion]) -> float:
+    """Fused poses a second where no loop of the footage interferes: the first ten frames of each epoch are left out."""
+    by_epoch: dict[int, list[LiveMotion]] = defaultdict(list)
+    for motion in motions:
+        by_epoch[motion.epoch].append(motion)
+    poses, seconds = 0, 0.0
+    for epoch in sorted(by_epoch)[1:-1]:
+        whole = by_epoch[epoch]
+        first_ns = min(motion.t_ns for motion in whole) + SEAM_FRAMES * FRAME_NS
+        last_ns = max(motion.t_ns for motion in whole)
+        poses += sum(motion.is_pose and motion.t_ns >= first_ns for motion in whole)
+        seconds += (last_ns - first_ns + FRAME_NS) * 1e-9
+    return poses / seconds if seconds > 0 else float("nan")
 
 
 def main() -> None:
