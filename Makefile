@@ -13,7 +13,7 @@ WEB    := services/tablet/web
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
-export NUMBA_CACHE_DIR := $(CURDIR)/$(DATA)/kernels
+export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
 .PHONY: help run test check setup networks footage web kernels lock clean distclean bench-box bench-footage
 
@@ -96,5 +96,5 @@ lock: ## Compile requirements.lock anew after a change of pyproject.toml
 clean: ## Remove what was built, but not the downloads' results
 	rm -rf $(WEB)/dist $(DATA)/kernels $(DATA)/bench $(DATA)/logs .mypy_cache .ruff_cache .pytest_cache
 
-distclean: clean ## Remove everything that is not in the repository
-	rm -rf $(VENV) $(DATA) $(WEB)/node_modules
+distclean: clean ## Remove everything that was installed or downloaded, too
+	rm -rf $(VENV) $(DATA)/networks $(DATA)/footage build/peers build/lock $(WEB)/node_modules *.egg-info .hypothesis .import_linter_cache

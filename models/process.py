@@ -14,6 +14,18 @@ from models.camera.rig import Rig
 from models.config.site import Site
 
 
+ROUTER = "fusion"
+"""The process that is the bus's router, for which all others wait."""
+
+Check = Callable[[Site, Rig, Path], None]
+"""What a part wants checked before anything is started, with the data folder; it raises `UserError` if the part could not work."""
+
+
+def process_name(entry: str, camera: str | None = None) -> str:
+    """The name on the bus of the process of an entry point, and for "edge" of a camera."""
+    return entry if camera is None else f"{entry}-{camera}"
+
+
 @dataclass(frozen=True)
 class Delivery:
     """One message as it arrived."""
@@ -66,7 +78,7 @@ class ProcessContext:
     """Everything a process of the box needs from outside.
 
     Attributes:
-        name: the process's name on the bus: "edge-<camera>", "fusion", "tablet".
+        name: the process's name on the bus: see `process_name`.
         camera: the camera served, for an edge process.
         site: the decoded site file.
         rig: calibration of the site's cameras, in the site's order.

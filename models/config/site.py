@@ -54,7 +54,7 @@ class FusionConfig(Section, frozen=True):
     """Reconstruction."""
 
     preset: Annotated[Literal["default", "paper"], Meta(description="default: what measured best; paper: as printed")] = "default"
-    live_hz: Annotated[float, Meta(ge=5, le=60, description="fused poses a second")] = 30.0
+    live_hz: Annotated[float, Meta(ge=30, le=60, description="fused poses a second")] = 30.0
 
 
 class SupervisorConfig(Section, frozen=True):

@@ -31,14 +31,20 @@ class CameraHealth(msgspec.Struct, frozen=True):
 class FusionHealth(msgspec.Struct, frozen=True):
     """What the fusion process measured over the last second.
 
-    `cpu_load` is the share (0 to 1) of the CPU granted to the box that is in use; `rejected` counts messages that could
-    not be read.
+    Attributes:
+        live_hz: live motions published a second.
+        step_ms: CPU milliseconds of the core's steps for each tick, observations included.
+        cpu_load: share (0 to 1) of the CPU granted to the box that is in use.
+        rejected: messages that could not be read.
+        ignored: observations that were read but not fused, by camera.
+        pupil: whether the pupil is chosen.
     """
 
     live_hz: float
     step_ms: float
     cpu_load: float
     rejected: int
+    ignored: dict[str, int]
     pupil: Literal["searching", "found"]
 
 

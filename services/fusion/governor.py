@@ -128,11 +128,11 @@ def _best_affordable(state: GovernorState, load: Load, first: int, cpu_target: f
 
 def _falls_behind(state: GovernorState, load: Load) -> bool:
     wanted = state.current.rate_hz
-    slowest_source = min(camera.source_hz for camera in load.cameras)
-    reachable = min(wanted, slowest_source)
+    # A source that is itself slower than the plan is held to what it delivers; one that delivers nothing says nothing.
+    judged = [camera for camera in load.cameras if camera.source_hz > 0 and camera.target_hz == wanted]
+    slow = [camera for camera in judged if camera.fresh_hz < _SHORTFALL * min(wanted, camera.source_hz)]
     # One slow camera may have trouble of its own; the CPU is short when they are slow together.
-    slow = [camera for camera in load.cameras if camera.target_hz == wanted and camera.fresh_hz < _SHORTFALL * reachable]
-    return reachable > 0 and 2 * len(slow) >= len(load.cameras)
+    return bool(judged) and 2 * len(slow) >= len(judged)
 
 
 def _step_down(state: GovernorState, t_ns: int) -> GovernorState:

@@ -63,7 +63,7 @@ class FusionState:
         tick_ns: the newest tick, 0 before the first.
         grid: index of the next smooth instant, None before the first.
         sequences: motions given out, by kind.
-        ignored: observations that were not fused, by reason.
+        ignored: observations that were not fused, by camera and reason.
     """
 
     views: Views
@@ -72,7 +72,7 @@ class FusionState:
     tick_ns: int = 0
     grid: int | None = None
     sequences: dict[str, int] = field(default_factory=lambda: {"live": 0, "smooth": 0})
-    ignored: dict[str, int] = field(default_factory=dict)
+    ignored: dict[tuple[str, str], int] = field(default_factory=dict)
 
 
 def initial_state(rig: Rig, config: FusionConfig) -> FusionState:  # noqa: ARG001 - the signature of every step function's start
@@ -86,7 +86,7 @@ def step(state: FusionState, event: Observation | Tick, config: FusionConfig) ->
         return state, _tick(state, event.t_ns, config)
     reason = _observe(state, event, config)
     if reason:
-        state.ignored[reason] = state.ignored.get(reason, 0) + 1
+        state.ignored[event.camera, reason] = state.ignored.get((event.camera, reason), 0) + 1
     return state, FusionOutput(found=bool(state.epochs) and state.epochs[-1].pupil is not None)
 
 

@@ -2,7 +2,7 @@
 
 import os
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import msgspec
 import structlog
@@ -27,6 +27,8 @@ SECOND_NS = 1_000_000_000
 CAMERA_SILENT_NS = 3 * SECOND_NS
 """A camera whose health is older than this takes no part in the governor's plan."""
 
+_LATE_AT_SEAM = 2
+
 log = structlog.get_logger()
 
 
@@ -44,6 +46,13 @@ class _Second:
     live: int = 0
     ticks: int = 0
     spent_ns: int = 0
+    rejected: int = 0
+    ignored_before: dict[tuple[str, str], int] = field(default_factory=dict)
+
+    def ignored(self, total: dict[tuple[str, str], int]) -> dict[tuple[str, str], int]:
+        """Observations that were not fused since the second began, by camera and reason."""
+        new = {key: count - self.ignored_before.get(key, 0) for key, count in total.items()}
+        return {key: count for key, count in new.items() if count}
 
 
 class FusionLoop:
@@ -62,7 +71,6 @@ class FusionLoop:
         self._found = False
         self._cameras: dict[str, tuple[int, CameraHealth]] = {}
         self._controls = 0
-        self._rejected = 0
         self._second = _Second(time.monotonic_ns())
 
     def run(self) -> None:
@@ -93,12 +101,13 @@ class FusionLoop:
     def _receive(self, delivery: Delivery) -> None:
         try:
             if delivery.topic in self._observations:
-                self._step(codec.decode(delivery.payload, Observation))
+                self._step(_observation(delivery))
                 return
             camera = codec.decode(delivery.payload, Health).camera
         except codec.CodecError as error:
-            self._rejected += 1
-            log.warning("message refused", topic=delivery.topic, reason=str(error))
+            if self._second.rejected == 0:  # one a second says enough, and fills no disk
+                log.warning("message refused", topic=delivery.topic, reason=str(error))
+            self._second.rejected += 1
             return
         if camera is not None and camera.camera in self._names:
             self._cameras[camera.camera] = (time.monotonic_ns(), camera)
@@ -140,7 +149,8 @@ class FusionLoop:
 
     def _report(self, now_ns: int) -> None:
         second, seconds = self._second, (now_ns - self._second.began_ns) * 1e-9
-        self._second = _Second(now_ns)
+        ignored = second.ignored(self._state.ignored)
+        self._second = _Second(now_ns, ignored_before=dict(self._state.ignored))
         alive = {name: camera for name, (t_ns, camera) in self._cameras.items() if now_ns - t_ns < CAMERA_SILENT_NS}
         used_cores = self._cpu.used_cores()
         load = Load(self._cpu.granted_cores, used_cores, tuple(alive.values()))
@@ -151,13 +161,12 @@ class FusionLoop:
             level = self._governor.current
             log.info("governor", rate_hz=level.rate_hz, network=level.network, used_cores=round(used_cores, 2))
         resources = self._context.resources()
-        missing = [name for name in self._names if name not in alive]
-        reason = f"no word from {', '.join(missing)}" if missing else ""
+        reason = _trouble([name for name in self._names if name not in alive], ignored, second.rejected)
         health = Health(
             process=self._context.name,
             pid=os.getpid(),
             t_ns=now_ns,
-            state="degraded" if missing else "ok",
+            state="degraded" if reason else "ok",
             reason=reason,
             cpu_cores=resources.cpu_cores,
             rss_mb=resources.rss_mb,
@@ -165,8 +174,27 @@ class FusionLoop:
                 live_hz=second.live / seconds,
                 step_ms=second.spent_ns * 1e-6 / max(second.ticks, 1),
                 cpu_load=used_cores / self._cpu.granted_cores,
-                rejected=self._rejected,
+                rejected=second.rejected,
+                ignored={camera: sum(n for (name, _), n in ignored.items() if name == camera) for camera, _ in ignored},
                 pupil="found" if self._found else "searching",
             ),
         )
         self._bus.publish(topics.health(self._context.name), codec.encode(health))
+
+
+def _observation(delivery: Delivery) -> Observation:
+    """The observation of a delivery, which must be of the camera that the topic names."""
+    observation = codec.decode(delivery.payload, Observation)
+    if topics.observation(observation.camera) != delivery.topic:
+        raise codec.CodecError(f"an observation of camera '{observation.camera}'")
+    return observation
+
+
+def _trouble(missing: list[str], ignored: dict[tuple[str, str], int], rejected: int) -> str:
+    """What is wrong, in one line; empty if nothing is. A few observations are late at every seam."""
+    troubles = [f"no word from {', '.join(missing)}"] if missing else []
+    troubles += [
+        f"{camera} is not fused: its pictures are {reason}" for (camera, reason), n in ignored.items() if n > _LATE_AT_SEAM
+    ]
+    troubles += [f"{rejected} messages could not be read"] if rejected else []
+    return "; ".join(troubles)

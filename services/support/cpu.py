@@ -14,8 +14,7 @@ class CpuMeter:
 
     def __init__(self, cgroup: Path | None = None) -> None:
         self._cpus = sorted(os.sched_getaffinity(0))
-        self._cgroup = cgroup if cgroup is not None else _own_cgroup()
-        self._quota_cores = _quota_cores(self._cgroup)
+        self._quota_cores, self._cgroup = _tightest_quota(cgroup if cgroup is not None else _own_cgroup())
         self._read_at = time.monotonic()
         self._usage_s = _usage_s(self._cgroup)
         psutil.cpu_percent(percpu=True)
@@ -50,19 +49,20 @@ def _own_cgroup() -> Path | None:
     return folder if folder.is_dir() else None
 
 
-def _quota_cores(cgroup: Path | None) -> float | None:
-    """The smallest `cpu.max` from this control group up to the root; None where nothing is limited."""
+def _tightest_quota(cgroup: Path | None) -> tuple[float | None, Path | None]:
+    """The smallest `cpu.max` from this control group up to the root, and the group that it is shared by."""
     smallest: float | None = None
+    limited: Path | None = None
     while cgroup is not None and cgroup != cgroup.parent:
         try:
             quota, period = (cgroup / "cpu.max").read_text().split()
-            if quota != "max":
-                cores = int(quota) / int(period)
-                smallest = cores if smallest is None else min(smallest, cores)
+            cores = float("inf") if quota == "max" else int(quota) / int(period)
         except (OSError, ValueError):
-            pass
+            cores = float("inf")
+        if cores < (smallest or float("inf")):
+            smallest, limited = cores, cgroup
         cgroup = cgroup.parent if cgroup != _CGROUP else None
-    return smallest
+    return smallest, limited
 
 
 def _usage_s(cgroup: Path | None) -> float | None:

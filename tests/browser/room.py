@@ -145,7 +145,7 @@ class Room:
         for index, (camera, bus) in enumerate(self._edges.items()):
             rates = CameraHealth(camera, 30.0, scene.fresh_hz - 0.3 * index, 15.0, 12 + 7 * index, 21.0 + 3 * index, "thunder", {})
             self._say(bus, Health(f"edge-{camera}", 100 + index, now_ns, "ok", "", 0.36, 214.0, camera=rates))
-        fusion = FusionHealth(29.8, 4.2, 0.83, 0, "found" if scene.pupil == "found" else "searching")
+        fusion = FusionHealth(29.8, 4.2, 0.83, 0, {}, "found" if scene.pupil == "found" else "searching")
         self._say(self._fusion, Health("fusion", 99, now_ns, "ok", "", 0.21, 186.0, fusion=fusion))
 
     def _say(self, bus: MemoryBus, health: Health) -> None:

@@ -46,7 +46,7 @@ def examples() -> dict[str, codec.Message]:
         "health": Health(
             "edge-cam01", 4711, 10**15, "degraded", "slow", 0.25, 210.5,
             camera=CameraHealth("cam01", 30.0, 9.9, 10.0, 4, 12.5, "thunder", {"decode": 4.5, "pose": 24.0}),
-            fusion=FusionHealth(30.0, 1.25, 0.8, 3, "found"),
+            fusion=FusionHealth(30.0, 1.25, 0.8, 3, {"cam02": 7}, "found"),
         ),
     }  # fmt: skip
 

@@ -95,6 +95,14 @@ def test_a_slow_source_is_not_taken_for_a_short_cpu() -> None:
     assert moved.level == governor.START
 
 
+@pytest.mark.parametrize("source_hz", [0.0, 5.0])
+def test_a_dead_or_slow_source_does_not_hide_that_the_others_fall_behind(source_hz: float) -> None:
+    behind = CameraHealth("cam", 30.0, 3.0, 10.0, 50, 90.0, "thunder", {"pose": 28.0})
+    ill = CameraHealth("ill", source_hz, min(source_hz, 3.0), 10.0, 0, 5.0, "thunder", {"pose": 28.0})
+    moved = governor.step(GovernorState(), Load(4.0, 1.4, [behind, behind, behind, ill]), 10**10, 10.0, 0.85)
+    assert moved.level == governor.START + 1
+
+
 def test_no_camera_alive_changes_nothing() -> None:
     assert governor.step(GovernorState(), Load(2.0, 0.1, []), 10**10, 30.0, 0.85) == GovernorState()
 

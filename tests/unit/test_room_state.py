@@ -145,7 +145,7 @@ def test_a_camera_counts_as_used_only_while_something_is_seen() -> None:
 
 def test_fusion_that_is_silent_or_gone_knows_nothing_of_the_pupil() -> None:
     state = room()
-    fusion = FusionHealth(30.0, 4.0, 0.8, 0, "found")
+    fusion = FusionHealth(30.0, 4.0, 0.8, 0, {}, "found")
     state.receive_health(Health("fusion", 2, T0, "ok", "", 0.2, 100.0, fusion=fusion), T0)
     assert state.status(T0, 0).pupil == "found"
     assert state.status(T0 + 10 * S, 0).pupil == "unknown"

@@ -1,0 +1,191 @@
+"""The fusion process's loop over the in-memory bus: what goes in, what must come out, and what must not stop it."""
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+
+from models.config.site import CameraConfig, Site
+from models.messages import codec, topics
+from models.messages.control import ViewControl
+from models.messages.health import CameraHealth, FusionHealth, Health
+from models.messages.motion import JointState, Motion
+from models.messages.observation import Crop, Observation, Person
+from models.process import Bus, ProcessContext, Resources, Subscription
+from services.bus.memory import MemoryRouter
+from services.fusion.process import FusionLoop
+from services.support.cpu import CpuMeter
+from tests.integration.waiting import DEADLINE_S, until
+from tests.synthetic.gym import ring_rig
+from tests.synthetic.person import Person as Pupil
+
+RIG = ring_rig(4)
+PUPIL = Pupil()
+
+
+@dataclass
+class Room:
+    """The loop in a thread, and the other side of its bus."""
+
+    bus: Bus
+    live: Subscription
+    healths: Subscription
+    controls: Subscription
+    sequence: int = 0
+
+    def film(self, epoch: int = 0, camera_named: str | None = None) -> None:
+        """One picture of every camera, now."""
+        t_ns = time.monotonic_ns()
+        joints = PUPIL.joints(1.0)
+        for camera in RIG:
+            pixels = camera.project(joints).astype(np.float32)
+            person = Person(1, Crop(640.0, 360.0, 400.0), pixels, np.full(17, 2, np.float32), np.full(17, 0.9, np.float32))
+            name = camera_named or camera.name
+            observation = Observation(name, epoch, self.sequence, self.sequence, t_ns, t_ns, "thunder", (person,))
+            self.bus.publish(topics.observation(camera.name), codec.encode(observation))
+        self.sequence += 1
+
+    def newest_live(self) -> Motion:
+        delivery = self.live.receive(DEADLINE_S)
+        assert delivery is not None, "no live motion"
+        return codec.decode(delivery.payload, Motion)
+
+    def film_until_seen(self) -> Motion:
+        """Film until the whole pupil is in a live motion."""
+        end = time.monotonic() + DEADLINE_S
+        while time.monotonic() < end:
+            self.film()
+            motion = self.newest_live()
+            if (motion.states == JointState.SEEN).all():
+                return motion
+        pytest.fail("the pupil was never seen")
+
+    def fusion_health(self) -> tuple[Health, FusionHealth]:
+        """The next word of fusion about itself."""
+        while True:
+            delivery = self.healths.receive(DEADLINE_S)
+            assert delivery is not None, "no health"
+            health = codec.decode(delivery.payload, Health)
+            if health.fusion is not None:
+                return health, health.fusion
+
+
+@contextmanager
+def running(tmp_path: Path) -> Iterator[Room]:
+    router = MemoryRouter()
+    own, other = router.open(), router.open()
+    room = Room(
+        bus=other,
+        live=other.subscribe(topics.motion("live"), keep=1),
+        healths=other.subscribe(topics.health("fusion"), keep=2),
+        controls=other.subscribe(*(topics.control(name) for name in RIG.names), keep=1),
+    )
+    cameras = [CameraConfig(name=name, kind="video", path="none.avi") for name in RIG.names]
+    stop = threading.Event()
+    context = ProcessContext(
+        name="fusion",
+        camera=None,
+        site=Site(version=1, name="test", calibration="rig.toml", cameras=cameras),
+        rig=RIG,
+        data=tmp_path,
+        start_ns=time.monotonic_ns(),
+        bus=own,
+        stop=stop,
+        resources=lambda: Resources(0.1, 100.0),
+    )
+    thread = threading.Thread(target=FusionLoop(context, CpuMeter()).run, daemon=True)
+    thread.start()
+    try:
+        yield room
+    finally:
+        stop.set()
+        thread.join(DEADLINE_S)
+        assert not thread.is_alive(), "the loop did not honour stop"
+
+
+def test_pictures_become_the_pupil_where_he_stands(tmp_path: Path) -> None:
+    with running(tmp_path) as room:
+        motion = room.film_until_seen()
+    assert np.abs(motion.joints_m - PUPIL.joints(1.0)).max() < 0.05
+    assert motion.t_published_ns >= motion.t_ns
+
+
+def test_every_camera_is_told_where_to_look_and_takes_its_turn(tmp_path: Path) -> None:
+    with running(tmp_path) as room:
+        room.film_until_seen()
+        newest: dict[str, ViewControl] = {}
+
+        def told() -> bool:
+            room.film()
+            delivery = room.controls.receive(DEADLINE_S)
+            assert delivery is not None
+            control = codec.decode(delivery.payload, ViewControl)
+            newest[control.camera] = control
+            return len(newest) == 4 and all(control.prediction is not None for control in newest.values())
+
+        until(told, "a prediction for every camera")
+    assert len({control.offset_ns for control in newest.values()}) == 4
+    assert not any(control.search for control in newest.values())
+    for camera in RIG:
+        prediction = newest[camera.name].prediction
+        assert prediction is not None
+        centre = camera.project(PUPIL.joints(1.0)).mean(axis=0)
+        crop = prediction.crop
+        assert np.hypot(crop.centre_x_px - centre[0], crop.centre_y_px - centre[1]) < 0.5 * crop.side_px
+
+
+def test_without_pictures_nothing_is_known_and_nothing_is_claimed(tmp_path: Path) -> None:
+    with running(tmp_path) as room:
+        health, fusion = room.fusion_health()
+    assert fusion.pupil == "searching"
+    assert health.state == "degraded"
+    assert all(name in health.reason for name in RIG.names)
+
+
+def test_messages_that_cannot_be_read_are_counted_and_do_no_harm(tmp_path: Path) -> None:
+    with running(tmp_path) as room:
+        for payload in (b"", b"\x01", b"rubbish" * 100, bytes(100_000)):
+            room.bus.publish(topics.observation("cam0"), payload)
+            room.bus.publish(topics.health("edge-cam0"), payload)
+            time.sleep(0.05)
+        _, fusion = room.fusion_health()
+        assert fusion.rejected > 0
+        room.film_until_seen()
+
+
+def test_an_observation_in_another_cameras_name_is_refused(tmp_path: Path) -> None:
+    with running(tmp_path) as room:
+        room.film(camera_named="cam3")
+        _, fusion = room.fusion_health()
+    assert fusion.rejected == 3
+
+
+def test_a_camera_whose_pictures_are_not_fused_is_named(tmp_path: Path) -> None:
+    with running(tmp_path) as room:
+        room.film_until_seen()
+        room.film(epoch=5)
+
+        def named() -> bool:
+            for _ in range(8):
+                room.film(epoch=1)
+                time.sleep(0.02)
+            health, fusion = room.fusion_health()
+            return fusion.ignored.get("cam1", 0) > 0 and "cam1 is not fused" in health.reason and health.state == "degraded"
+
+        until(named, "cam1 named as not fused")
+
+
+def test_a_word_of_health_of_an_unknown_camera_takes_no_part_in_the_plan(tmp_path: Path) -> None:
+    stranger = CameraHealth("elsewhere", 30.0, 1.0, 10.0, 0, 5.0, "thunder", {"pose": 900.0})
+    health = Health("edge-elsewhere", 1, time.monotonic_ns(), "ok", "", 0.1, 1.0, camera=stranger)
+    with running(tmp_path) as room:
+        room.bus.publish(topics.health("edge-elsewhere"), codec.encode(health))
+        said, _ = room.fusion_health()
+    assert "elsewhere" not in said.reason
+    assert msgspec.structs.asdict(said)["process"] == "fusion"
