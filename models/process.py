@@ -13,9 +13,10 @@ from typing import NamedTuple, Protocol
 from models.camera.rig import Rig
 from models.config.site import Site
 
-
 ROUTER = "fusion"
 """The process that is the bus's router, for which all others wait."""
+EDGE = "edge"
+"""The process of one camera; the only one of which there are several."""
 
 Check = Callable[[Site, Rig, Path], None]
 """What a part wants checked before anything is started, with the data folder; it raises `UserError` if the part could not work."""

@@ -1,5 +1,6 @@
 """The command line. Each command imports what it needs when it runs, so that help and errors come at once."""
 
+import os
 import sys
 from importlib.metadata import version as installed_version
 from pathlib import Path
@@ -52,6 +53,9 @@ def process(
     start_ns: Annotated[int | None, typer.Option(help="Monotonic time in ns that all processes count from.")] = None,
 ) -> None:
     """Run one process of the box on its own."""
+    from services.support.environment import process_environment  # noqa: PLC0415
+
+    os.environ.update(process_environment(data))  # before numpy and numba are imported
     from services.cli.process import ProcessOrder, run_process  # noqa: PLC0415
     from services.support import logs  # noqa: PLC0415
 

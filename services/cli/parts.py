@@ -7,19 +7,15 @@ process of one name, the first on the import path is taken.
 
 from collections.abc import Callable
 from importlib.metadata import EntryPoint, entry_points
-from pathlib import Path
 from typing import cast
 
-from models.camera.rig import Rig
-from models.config.site import Site
 from models.errors import UserError
-from models.process import ProcessContext
+from models.process import Check, ProcessContext
 
 PROCESSES = "kinebox.processes"
 CHECKS = "kinebox.checks"
 
 Process = Callable[[ProcessContext], None]
-Check = Callable[[Site, Rig, Path], None]
 
 
 def find_process(name: str) -> EntryPoint:

@@ -5,14 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from models.errors import UserError
-from models.process import Bus, ProcessContext
+from models.process import EDGE, ROUTER, Bus, ProcessContext, process_name
 from services.cli.parts import find_process, load_process
 from services.support.health import ResourceMeter
 from services.support.signals import stop_on_signals
 from services.support.site_files import read_site
-
-ROUTER = "fusion"
-"""The process that is the bus's router."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +28,7 @@ class ProcessOrder:
     @property
     def name(self) -> str:
         """The name on the bus."""
-        return self.entry if self.camera is None else f"{self.entry}-{self.camera}"
+        return process_name(self.entry, self.camera)
 
 
 def run_process(order: ProcessOrder) -> None:
@@ -42,8 +39,7 @@ def run_process(order: ProcessOrder) -> None:
     """
     stop = stop_on_signals()
     site, rig = read_site(order.site)
-    if order.camera is not None and order.camera not in rig.names:
-        raise UserError(f"camera '{order.camera}' is not in {order.site}, which has {', '.join(rig.names)}; correct its name")
+    _require_camera(order, rig.names)
     entry = find_process(order.entry)
     from services.bus.zenoh_bus import open_client, open_router  # noqa: PLC0415 - a wrong site file shall not wait for it
 
@@ -72,3 +68,15 @@ def run_process(order: ProcessOrder) -> None:
         main(context)
     finally:
         bus.close()
+
+
+def _require_camera(order: ProcessOrder, names: tuple[str, ...]) -> None:
+    """Raise UserError unless an edge process has a camera of the site, and any other has none."""
+    if order.entry != EDGE:
+        if order.camera is not None:
+            raise UserError(f"process '{order.entry}' serves no camera of its own; leave out --camera")
+        return
+    if order.camera is None:
+        raise UserError(f"process '{EDGE}' serves one camera; name it with --camera ({', '.join(names)})")
+    if order.camera not in names:
+        raise UserError(f"camera '{order.camera}' is not in {order.site}, which has {', '.join(names)}; correct its name")

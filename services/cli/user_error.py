@@ -3,10 +3,10 @@
 import sys
 from typing import NoReturn
 
-from models.errors import UserError
+from models.errors import USER_ERROR_CODE, USER_ERROR_PREFIX, UserError
 
 
 def exit_with_line(error: UserError) -> NoReturn:
-    """One line on stderr, exit code 2, no traceback."""
-    sys.stderr.write(f"kinebox: {' '.join(str(error).split())}\n")
-    sys.exit(2)
+    """One line on stderr, exit code `USER_ERROR_CODE`, no traceback."""
+    sys.stderr.write(f"{USER_ERROR_PREFIX}{' '.join(str(error).split())}\n")
+    sys.exit(USER_ERROR_CODE)

@@ -8,7 +8,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-USER_ERROR_PREFIX = "kinebox: "
+from models.errors import USER_ERROR_PREFIX
+from models.process import process_name
+
 EDGE_NICENESS = 5
 """Inference takes all the CPU that it is given; fusion and the page, which need little, shall not wait for it."""
 _MODULE = "services.cli.child"
@@ -27,7 +29,7 @@ class ChildSpec:
     @property
     def name(self) -> str:
         """The process's name on the bus."""
-        return self.entry if self.camera is None else f"{self.entry}-{self.camera}"
+        return process_name(self.entry, self.camera)
 
     @property
     def niceness(self) -> int:
@@ -47,7 +49,7 @@ def name_of(command: Sequence[str]) -> str | None:
         return None
     entry = command[command.index(_MODULE) + 1]
     camera = command[command.index("--camera") + 1] if "--camera" in command else None
-    return ChildSpec(entry, camera).name
+    return process_name(entry, camera)
 
 
 class Child:

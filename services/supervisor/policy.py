@@ -9,9 +9,6 @@ from dataclasses import dataclass
 
 from models.config.site import SupervisorConfig
 
-USER_ERROR = 2
-"""Exit code of a process that said in one line what a person must do; starting it again cannot help."""
-
 _FIRST_DELAY_S = 0.25
 _LONGEST_DELAY_S = 4.0
 

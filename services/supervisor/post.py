@@ -4,8 +4,9 @@ import signal
 from dataclasses import dataclass, field
 
 from models.config.site import SupervisorConfig
+from models.errors import USER_ERROR_CODE
 from services.supervisor.child import Child, ChildSpec
-from services.supervisor.policy import USER_ERROR, GiveUp, History, Restart, decide
+from services.supervisor.policy import GiveUp, History, Restart, decide
 
 
 @dataclass
@@ -42,8 +43,8 @@ class Post:
         """The process ended: decide what becomes of the post."""
         self.child = None
         self.reported = "ok"
-        if code == USER_ERROR and not self.hangs:
-            self.given_up = user_error or "ended with exit code 2"
+        if code == USER_ERROR_CODE and not self.hangs:
+            self.given_up = user_error or describe_exit(code)
             return
         why = "hung" if self.hangs else describe_exit(code)
         decision = decide(self.history, now_s, config)

@@ -1,15 +1,15 @@
 """Everything that can be checked before a process is started, so that nothing is ever half started."""
 
 import socket
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
+from typing import NamedTuple
 
-from models.camera.rig import Rig
 from models.config.site import Site
 from models.errors import UserError
+from models.process import Check
+from services.support.listening import listen
 from services.support.site_files import read_site
-
-Check = Callable[[Site, Rig, Path], None]
 
 
 def check_everything(site_file: Path, data: Path, checks: Iterable[Check]) -> Site:
@@ -26,28 +26,47 @@ def check_everything(site_file: Path, data: Path, checks: Iterable[Check]) -> Si
     site, rig = read_site(site_file)
     for check in checks:
         check(site, rig, data)
-    require_free(site.tablet.host, site.tablet.port, "port of the page", "tablet.port")
-    require_free(*_host_and_port(site.bus.endpoint), "port of the bus", "bus.endpoint")
+    require_ports(site)
     return site
 
 
-def require_free(host: str, port: int, what: str, key: str) -> None:
-    """Raise UserError unless `port` can be listened on at `host`; `key` of the site file is what to change."""
-    try:
-        family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-    except OSError as error:
-        raise UserError(
-            f"{what}: '{host}' is no address of this machine ({error.strerror}); change {key} in the site file"
-        ) from error
-    with socket.socket(family, kind, protocol) as probe:
-        # As the servers do it: connections that are only closing do not count.
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+def require_ports(site: Site) -> None:
+    """Raise UserError unless the page and the bus can be listened on at the same time, as they will be."""
+    bus_host, bus_port = _host_and_port(site.bus.endpoint)
+    bus = _Port(bus_host, bus_port, "port of the bus", "bus.endpoint")
+    with _Port(site.tablet.host, site.tablet.port, "port of the page", "tablet.port").hold():
         try:
-            probe.bind(address)
+            bus.hold().close()
+        except UserError:
+            if bus.number != site.tablet.port:
+                raise
+        else:
+            return
+    # Somebody else's, or the page's own?
+    bus.hold().close()
+    raise UserError(f"port {bus.number} is both the page's and the bus's; change tablet.port or bus.endpoint in the site file")
+
+
+class _Port(NamedTuple):
+    """A port that the box needs; `key` of the site file is what to change."""
+
+    host: str
+    number: int
+    what: str
+    key: str
+
+    def hold(self) -> socket.socket:
+        """Listen on it; UserError if that cannot be."""
+        try:
+            return listen(self.host, self.number)
+        except socket.gaierror as error:
+            raise UserError(
+                f"{self.what}: '{self.host}' is no address of this machine ({error.strerror}); change {self.key} in the site file"
+            ) from error
         except OSError as error:
             raise UserError(
-                f"{what}: {port} on {host} cannot be used ({error.strerror}); stop what uses it, perhaps another KineBox, "
-                f"or change {key} in the site file"
+                f"{self.what}: {self.number} on {self.host} cannot be used ({error.strerror}); stop what uses it, "
+                f"perhaps another KineBox, or change {self.key} in the site file"
             ) from error
 
 

@@ -12,17 +12,18 @@ from pathlib import Path
 from threading import Event
 
 from models.config.site import Site
+from models.errors import USER_ERROR_CODE
+from models.process import EDGE, ROUTER, Check
 from services.supervisor import page
 from services.supervisor.bus_link import BusLink
 from services.supervisor.child import Child, ChildSpec
 from services.supervisor.journal import Journal
-from services.supervisor.policy import USER_ERROR
 from services.supervisor.post import Post, describe_exit
-from services.supervisor.preflight import Check, check_everything
+from services.supervisor.preflight import check_everything
 from services.supervisor.silence import Silence
+from services.support.environment import process_environment
 from services.support.signals import stop_on_signals
 
-ROUTER = "fusion"
 TICK_S = 0.1
 HELD_UP_S = 1.0
 """If a tick took longer than this, the supervisor itself was held up and nobody else is to blame."""
@@ -51,21 +52,8 @@ def supervise(site_file: Path, data: Path, checks: Iterable[Check]) -> None:
 
 def posts_of(site: Site) -> list[Post]:
     """What has to run for a site; the router first, since all others wait for it."""
-    cameras = [ChildSpec("edge", camera.name) for camera in site.cameras]
+    cameras = [ChildSpec(EDGE, camera.name) for camera in site.cameras]
     return [Post(spec) for spec in (ChildSpec(ROUTER), *cameras, ChildSpec("tablet"))]
-
-
-def child_environment(data: Path) -> dict[str, str]:
-    """The environment of every process: one thread each, and the compiled kernels where `make` has put them."""
-    fixed = {
-        "MKL_NUM_THREADS": "1",
-        "NUMBA_CACHE_DIR": str(data.resolve() / "kernels"),
-        "NUMBA_NUM_THREADS": "1",
-        "OMP_NUM_THREADS": "1",
-        "OPENBLAS_NUM_THREADS": "1",
-        "PYTHONUNBUFFERED": "1",
-    }
-    return dict(os.environ) | fixed
 
 
 class Supervisor:
@@ -77,7 +65,7 @@ class Supervisor:
         self._site = site
         self._journal = journal
         self._posts = posts_of(site)
-        self._environment = child_environment(data)
+        self._environment = dict(os.environ) | process_environment(data)
         # Now, not later: a source begins with the picture that is due when it is ready, so waiting would gain nothing.
         self._start_ns = time.monotonic_ns()
         self._silence = Silence(ROUTER)
@@ -201,7 +189,7 @@ class Supervisor:
         for post in self._posts:
             if post.child is not None:
                 code = self._end(post, post.child)
-                if code not in (0, USER_ERROR) and code > 0:
+                if code not in (0, USER_ERROR_CODE) and code > 0:
                     self._journal.say(f"{post.name} {describe_exit(code)} while ending", level="warning")
         self._journal.say("ended")
 

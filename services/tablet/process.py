@@ -17,6 +17,7 @@ from models.messages import codec, topics
 from models.messages.health import Health
 from models.messages.motion import Motion
 from models.process import Delivery, ProcessContext, Subscription
+from services.support import listening
 from services.tablet.room_state import RoomState
 from services.tablet.server import TabletServer, create_app
 
@@ -55,19 +56,12 @@ def listen(config: TabletConfig) -> socket.socket:
     """
     where = f"tablet: cannot listen on {config.host} port {config.port}"
     try:
-        family, kind, protocol, _, address = socket.getaddrinfo(config.host, config.port, type=socket.SOCK_STREAM)[0]
-    except OSError as error:
+        return listening.listen(config.host, config.port)
+    except socket.gaierror as error:
         raise UserError(f"{where}: {error.strerror}; correct 'host' under [tablet] in the site file") from error
-    listener = socket.socket(family, kind, protocol)
-    try:
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listener.bind(address)
-        listener.listen()
     except OSError as error:
-        listener.close()
         remedy = "end the program that uses it, or set another 'port' under [tablet] in the site file"
         raise UserError(f"{where}: {error.strerror}; {remedy}") from error
-    return listener
 
 
 class _Uvicorn(uvicorn.Server):

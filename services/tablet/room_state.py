@@ -9,6 +9,7 @@ from typing import Literal
 
 from models.messages.health import FusionHealth, Health
 from models.messages.motion import JointState, Motion
+from models.process import EDGE, ROUTER, process_name
 from services.tablet.camera_state import SILENT_AFTER_NS, HeardHealth, Presence, camera_status
 from services.tablet.messages import CameraStatus, Latency, ProcessStatus, Status
 
@@ -109,7 +110,7 @@ class RoomState:
         )
 
     def _camera(self, name: str, used: bool, now_ns: int) -> CameraStatus:
-        process = f"edge-{name}"
+        process = process_name(EDGE, name)
         presence = self._presence.get(process, Presence(None, self._started_ns))
         return camera_status(name, self._health.get(process), presence, used, now_ns)
 
@@ -124,8 +125,8 @@ class RoomState:
         return frozenset(use.camera for use in motion.cameras if use.used)
 
     def _fusion(self, now_ns: int) -> FusionHealth | None:
-        heard = self._health.get("fusion")
-        if heard is None or now_ns - heard.arrived_ns > SILENT_AFTER_NS or self._gone("fusion"):
+        heard = self._health.get(ROUTER)
+        if heard is None or now_ns - heard.arrived_ns > SILENT_AFTER_NS or self._gone(ROUTER):
             return None
         return heard.health.fusion
 

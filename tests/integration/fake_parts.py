@@ -1,7 +1,8 @@
 """Parts of a box that cost nothing: they report their health and do as a file in the data folder tells them when they start.
 
 `data/orders/NAME` holds one word: "crash", "hang" (reports no more once there is a file `data/hang`), "deaf" (to SIGTERM), "noise"
-(prints what is no log line) or "refuse" (ends with a line for people). `data/starts/NAME` gets a line a start.
+(prints what is no log line) or "refuse" (ends with a line for people). `data/starts/NAME` gets a line a start: process id, common
+beginning, folder of compiled kernels.
 """
 
 import os
@@ -72,7 +73,7 @@ def _order(context: ProcessContext) -> str:
     starts = context.data / "starts" / context.name
     starts.parent.mkdir(exist_ok=True)
     with starts.open("a") as file:
-        file.write(f"{os.getpid()} {context.start_ns}\n")
+        file.write(f"{os.getpid()} {context.start_ns} {os.environ.get('NUMBA_CACHE_DIR')}\n")
     order = context.data / "orders" / context.name
     word = order.read_text() if order.is_file() else ""
     if word == "deaf":

@@ -67,6 +67,9 @@ def test_a_bad_site_file_is_one_line_and_code_2(site: Path) -> None:
     [
         (("cook",), "no process is called 'cook' (there are: edge, fusion, tablet)"),
         (("edge", "--camera", "zzz"), "camera 'zzz' is not in "),
+        (("edge",), "process 'edge' serves one camera; name it with --camera (a, b)"),
+        (("fusion", "--camera", "a"), "process 'fusion' serves no camera of its own; leave out --camera"),
+        (("tablet", "--camera", "a"), "process 'tablet' serves no camera of its own; leave out --camera"),
     ],
 )
 def test_a_process_that_cannot_be_is_one_line_and_code_2(site: Path, words: tuple[str, ...], line: str) -> None:
@@ -87,6 +90,14 @@ def test_the_router_on_a_port_that_is_taken_is_one_line_and_code_2(site: Path) -
     assert second.returncode == 2
     assert errors.count("\n") == 1
     assert "is in use already; stop the other KineBox or change bus.endpoint" in errors
+
+
+def test_a_process_on_its_own_finds_the_compiled_kernels_as_under_the_supervisor(site: Path) -> None:
+    with running(site, "fusion") as process:
+        start = site.parent / "data" / "starts" / "fusion"
+        until(lambda: start.exists() and start.read_text().endswith("\n"), "the process")
+        process.terminate()
+    assert start.read_text().split()[2] == str(site.parent / "data" / "kernels")
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])

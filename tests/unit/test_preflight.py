@@ -1,0 +1,41 @@
+"""Ports that cannot be had are found before anything is started."""
+
+import socket
+
+import pytest
+
+from models.config.site import BusConfig, CameraConfig, Site, TabletConfig
+from models.errors import UserError
+from services.supervisor.preflight import require_ports
+from tests.integration.waiting import free_port
+
+
+def site(page_host: str, page_port: int, bus_port: int) -> Site:
+    return Site(
+        version=1,
+        name="Test gym",
+        calibration="rig.toml",
+        cameras=[CameraConfig(name=name, kind="video", path=f"{name}.avi") for name in "ab"],
+        bus=BusConfig(endpoint=f"tcp/127.0.0.1:{bus_port}"),
+        tablet=TabletConfig(host=page_host, port=page_port),
+    )
+
+
+def test_ports_that_are_free_are_free_again_afterwards() -> None:
+    page, bus = free_port(), free_port()
+    for _ in range(2):
+        require_ports(site("127.0.0.1", page, bus))
+
+
+@pytest.mark.parametrize("page_host", ["127.0.0.1", "0.0.0.0"])  # noqa: S104 - as site files have it
+def test_one_port_for_page_and_bus_is_refused_with_both_keys(page_host: str) -> None:
+    port = free_port()
+    with pytest.raises(UserError, match=rf"^port {port} is both .* change tablet\.port or bus\.endpoint in the site file$"):
+        require_ports(site(page_host, port, port))
+
+
+def test_a_bus_whose_port_somebody_else_has_is_not_blamed_on_the_page() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        with pytest.raises(UserError, match=rf"^port of the bus: {port} on 127\.0\.0\.1 cannot be used"):
+            require_ports(site("127.0.0.2", port, port))
