@@ -13,7 +13,7 @@ from typing import Any, TextIO
 
 import msgspec
 
-from services.supervisor.child import USER_ERROR_PREFIX
+from models.errors import USER_ERROR_PREFIX
 
 _FILE_BYTES = 8 * 2**20
 _OLD_FILES = 3
@@ -27,7 +27,9 @@ class _LogFile(logging.handlers.RotatingFileHandler):
 
 
 class Journal:
-    """Writes lines. A console that is gone or a disc that is full must not stop the box.
+    """Writes lines. A console that is gone or a disc that is full or read-only must not stop the box.
+
+    A file that cannot be opened is said once on the console, and the box runs on without one.
 
     Args:
         folder: where the file is kept; it is made if it is missing.
@@ -35,11 +37,15 @@ class Journal:
     """
 
     def __init__(self, folder: Path, console: TextIO | None = None) -> None:
-        folder.mkdir(parents=True, exist_ok=True)
         self.path = folder / "kinebox.log"
-        self._file = _LogFile(self.path, maxBytes=_FILE_BYTES, backupCount=_OLD_FILES)
         self._console = console or sys.stderr
         self._person = self._console.isatty()
+        self._file: _LogFile | None = None
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            self._file = _LogFile(self.path, maxBytes=_FILE_BYTES, backupCount=_OLD_FILES)
+        except OSError as error:
+            self.say(f"nothing is kept in {self.path}: {error.strerror}; free or mend the disc, then start anew", level="warning")
 
     def child_said(self, process: str, line: str) -> None:
         """Pass on a line of a process; one that is no JSON (a traceback, a library's print) is wrapped as an error."""
@@ -70,10 +76,12 @@ class Journal:
 
     def close(self) -> None:
         """Close the file."""
-        self._file.close()
+        if self._file is not None:
+            self._file.close()
 
     def _write(self, line: str) -> None:
-        self._file.handle(logging.LogRecord("kinebox", logging.INFO, "", 0, line, None, None))
+        if self._file is not None:
+            self._file.handle(logging.LogRecord("kinebox", logging.INFO, "", 0, line, None, None))
 
     def _show(self, line: str) -> None:
         try:

@@ -24,7 +24,8 @@ def answers(config: TabletConfig) -> bool:
 def addresses(config: TabletConfig) -> list[str]:
     """Where to open the page: on this machine, then from others."""
     if config.host not in _ANYWHERE:
-        return [f"http://{config.host}:{config.port}"]
+        host = f"[{config.host}]" if ":" in config.host else config.host
+        return [f"http://{host}:{config.port}"]
     hosts = ["localhost"]
     hosts += sorted(
         address.address

@@ -84,6 +84,10 @@ def test_the_address_of_one_host_is_given_as_it_is() -> None:
     assert addresses(TabletConfig(host="10.0.0.7", port=81)) == ["http://10.0.0.7:81"]
 
 
+def test_the_address_of_an_ipv6_host_is_one_that_a_browser_takes() -> None:
+    assert addresses(TabletConfig(host="fd00::7", port=81)) == ["http://[fd00::7]:81"]
+
+
 def test_a_page_on_every_network_is_found_on_this_machine_first() -> None:
     found = addresses(TabletConfig(port=8080))
     assert found[0] == "http://localhost:8080"

@@ -63,3 +63,19 @@ def test_a_console_that_is_gone_does_not_stop_the_box(tmp_path: Path) -> None:
     journal.say("still here")
     journal.close()
     assert "still here" in journal.path.read_text()
+
+
+@pytest.mark.parametrize("fault", ["folder", "file"])
+def test_a_log_file_that_cannot_be_opened_is_said_once_and_does_not_stop_the_box(tmp_path: Path, fault: str) -> None:
+    if fault == "folder":
+        (tmp_path / "logs").write_text("a file where the folder should be")
+    else:
+        (tmp_path / "logs" / "kinebox.log").mkdir(parents=True)
+    console = io.StringIO()
+    journal = Journal(tmp_path / "logs", console)
+    journal.child_said("fusion", INFO)
+    journal.say("still here")
+    journal.close()
+    events = [msgspec.json.decode(line)["event"] for line in console.getvalue().splitlines()]
+    assert events[0].startswith(f"nothing is kept in {journal.path}: ")
+    assert events[1:] == ["governor", "still here"]
