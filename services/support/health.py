@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 from models.messages import codec, topics
-from models.messages.health import CameraHealth, FusionHealth, Health
+from models.messages.health import FusionHealth, Health
 from models.process import Bus, Resources
 
 PERIOD_S = 1.0
@@ -59,7 +59,6 @@ class HealthReporter:
         state: Literal["ok", "degraded", "failed"] = "ok",
         reason: str = "",
         *,
-        camera: CameraHealth | None = None,
         fusion: FusionHealth | None = None,
     ) -> Health:
         """Publish how this process is, and return what was published."""
@@ -74,7 +73,6 @@ class HealthReporter:
             reason=reason,
             cpu_cores=used.cpu_cores,
             rss_mb=used.rss_mb,
-            camera=camera,
             fusion=fusion,
         )
         self._bus.publish(topics.health(health.process), codec.encode(health))

@@ -1,5 +1,6 @@
 """How a camera is, from what its process says and when it last said it."""
 
+import math
 from dataclasses import dataclass
 
 from models.messages.health import CameraHealth, Health
@@ -33,6 +34,11 @@ class Presence:
     since_ns: int
 
 
+def known(figure: float) -> float | None:
+    """A figure from the bus; None if it is none (NaN or infinite), which JSON could not carry."""
+    return figure if math.isfinite(figure) else None
+
+
 def camera_status(name: str, heard: HeardHealth | None, presence: Presence, used: bool, now_ns: int) -> CameraStatus:
     """Judge one camera.
 
@@ -51,11 +57,11 @@ def camera_status(name: str, heard: HeardHealth | None, presence: Presence, used
         state=state,
         reason=reason,
         detail=heard.health.reason if heard else "",
-        source_hz=measured.source_hz if measured else None,
-        fresh_hz=measured.fresh_hz if measured else None,
-        target_hz=measured.target_hz if measured else None,
+        source_hz=known(measured.source_hz) if measured else None,
+        fresh_hz=known(measured.fresh_hz) if measured else None,
+        target_hz=known(measured.target_hz) if measured else None,
         network=measured.network if measured else None,
-        backlog_ms=measured.backlog_ms if measured else None,
+        backlog_ms=known(measured.backlog_ms) if measured else None,
         skipped=camera.skipped if camera else None,
         used=used and state != "lost",
     )
@@ -74,6 +80,8 @@ def _judge(heard: HeardHealth | None, presence: Presence, now_ns: int) -> tuple[
 
 
 def _judge_rates(camera: CameraHealth, degraded: bool) -> tuple[CameraState, CameraReason]:
+    if not all(map(math.isfinite, (camera.source_hz, camera.fresh_hz, camera.target_hz, camera.backlog_ms))):
+        return "slow", "degraded"  # It works, but how well cannot be known.
     if camera.source_hz <= 0:
         return "lost", "no_frames"
     if camera.target_hz <= 0:

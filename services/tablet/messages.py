@@ -46,18 +46,18 @@ class CameraStatus(_Model):
 
 
 class ProcessStatus(_Model):
-    """One process of the box, as it last described itself. `age_s` is the age of that description."""
+    """One process of the box, as it last described itself. `age_s` is the age of that description. Null is: not known."""
 
     name: str
     state: Literal["ok", "degraded", "failed", "silent", "gone"]
     reason: str
     age_s: float
-    cpu_cores: float
-    rss_mb: float
+    cpu_cores: float | None
+    rss_mb: float | None
 
 
 class Latency(_Model):
-    """Milliseconds from mid-exposure of the newest observation used until the server received the motion."""
+    """Age in milliseconds of the figure when the server received it: since the instant that it shows."""
 
     p50_ms: float
     p95_ms: float
@@ -107,7 +107,5 @@ class Ack(_Model):
 
 
 ClientMessage = Annotated[Ack | Ping, Field(discriminator="type")]
-ServerMessage = Annotated[Status | Pong, Field(discriminator="type")]
 
 CLIENT_MESSAGE: TypeAdapter[Ack | Ping] = TypeAdapter(ClientMessage)
-SERVER_MESSAGE: TypeAdapter[Status | Pong] = TypeAdapter(ServerMessage)

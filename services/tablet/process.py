@@ -1,14 +1,13 @@
 """The tablet server's process: takes motions and health from the bus, serves the page."""
 
 import asyncio
-import os
 import socket
-import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+import structlog
 import uvicorn
 
 from models.config.site import TabletConfig
@@ -18,16 +17,18 @@ from models.messages.health import Health
 from models.messages.motion import Motion
 from models.process import Delivery, ProcessContext, Subscription
 from services.support import listening
+from services.support.health import PERIOD_S, HealthReporter
 from services.tablet.room_state import RoomState
 from services.tablet.server import TabletServer, create_app
 
 PAGE = Path(__file__).parent / "web" / "dist"
 
 _RECEIVE_TIMEOUT_S = 0.1
-_HEALTH_PERIOD_S = 1.0
 _SHUTDOWN_S = 1
 _KEEP = 2
 _MAX_CLIENT_MESSAGE_BYTES = 4096
+
+log = structlog.get_logger()
 
 
 def main(context: ProcessContext) -> None:
@@ -35,6 +36,7 @@ def main(context: ProcessContext) -> None:
 
     Raises:
         UserError: the page is not built, or the port cannot be listened on.
+        Exception: what one of the server's parts failed with; without it the page would show a past for ever.
     """
     if not (PAGE / "index.html").is_file():
         raise UserError("tablet: the page is not built (services/tablet/web/dist is missing); run 'make web'")
@@ -91,27 +93,35 @@ async def _serve(context: ProcessContext, server: TabletServer, listener: socket
         with suppress(RuntimeError):
             loop.call_soon_threadsafe(action)
 
-    def end() -> None:
-        web.should_exit = True
-
     def seen(topic: str, alive: bool) -> None:
         hand_over(lambda: server.set_alive(topic.rsplit("/", 1)[-1], alive))
 
+    def end(part: "asyncio.Task[None]") -> None:
+        web.should_exit = True
+        if not part.cancelled() and (error := part.exception()) is not None:
+            log.error("a part of the server failed", part=part.get_name(), error=repr(error))
+
     subscription = context.bus.subscribe(topics.motion("live"), topics.ALL_HEALTH, keep=_KEEP)
-    receiver = threading.Thread(
-        target=_receive, args=(context, subscription, server, hand_over, end), name="tablet-bus", daemon=True
-    )
     context.bus.watch_alive(topics.ALL_ALIVE, seen)
     context.bus.declare_alive(topics.alive(context.name))
-    receiver.start()
-    health = asyncio.create_task(_publish_health(context, server))
+    receiver = asyncio.create_task(asyncio.to_thread(_receive, context, subscription, server, hand_over), name="bus")
+    endless = (
+        asyncio.create_task(server.show_statuses(), name="statuses"),
+        asyncio.create_task(_publish_health(context, server), name="health"),
+    )
+    for part in (receiver, *endless):
+        part.add_done_callback(end)
     try:
         await web.serve(sockets=[listener])
     finally:
         context.stop.set()
-        health.cancel()
-        await asyncio.to_thread(receiver.join)
+        for part in endless:
+            part.cancel()
+        ends = await asyncio.gather(receiver, *endless, return_exceptions=True)
         subscription.close()
+    for error in ends:
+        if isinstance(error, Exception):
+            raise error
 
 
 def _receive(
@@ -119,14 +129,12 @@ def _receive(
     subscription: Subscription,
     server: TabletServer,
     hand_over: Callable[[Callable[[], None]], None],
-    end: Callable[[], None],
 ) -> None:
     """Bus to event loop, in a thread of its own, until the process shall stop."""
     while not context.stop.is_set():
         delivery = subscription.receive(_RECEIVE_TIMEOUT_S)
         if delivery is not None:
             hand_over(_decoded(delivery, server))
-    hand_over(end)
 
 
 def _decoded(delivery: Delivery, server: TabletServer) -> Callable[[], None]:
@@ -142,18 +150,13 @@ def _decoded(delivery: Delivery, server: TabletServer) -> Callable[[], None]:
 
 
 async def _publish_health(context: ProcessContext, server: TabletServer) -> None:
-    """Say how this process is, once a second."""
+    """Say how this process is, once a second: degraded if, since it last said so, messages could not be read."""
+    reporter = HealthReporter(context.name, context.bus, context.resources)
+    counted = 0
     while True:
-        used = context.resources()
-        rejected = server.room.rejected_bus_messages
-        health = Health(
-            process=context.name,
-            pid=os.getpid(),
-            t_ns=time.monotonic_ns(),
-            state="degraded" if rejected else "ok",
-            reason=f"{rejected} messages on the bus could not be read" if rejected else "",
-            cpu_cores=used.cpu_cores,
-            rss_mb=used.rss_mb,
-        )
-        context.bus.publish(topics.health(context.name), codec.encode(health))
-        await asyncio.sleep(_HEALTH_PERIOD_S)
+        rejected, counted = server.room.rejected_bus_messages - counted, server.room.rejected_bus_messages
+        if rejected:
+            reporter.report("degraded", f"{rejected} messages on the bus could not be read in the last second")
+        else:
+            reporter.report()
+        await asyncio.sleep(PERIOD_S)

@@ -10,7 +10,7 @@ from typing import Literal
 from models.messages.health import FusionHealth, Health
 from models.messages.motion import JointState, Motion
 from models.process import EDGE, ROUTER, process_name
-from services.tablet.camera_state import SILENT_AFTER_NS, HeardHealth, Presence, camera_status
+from services.tablet.camera_state import SILENT_AFTER_NS, HeardHealth, Presence, camera_status, known
 from services.tablet.messages import CameraStatus, Latency, ProcessStatus, Status
 
 WINDOW_NS = 3_000_000_000
@@ -76,7 +76,8 @@ class RoomState:
     def receive_motion(self, motion: Motion, now_ns: int) -> None:
         """A motion arrived."""
         self._motion = motion
-        self._meter.add(now_ns, max(now_ns - motion.t_newest_ns, 0) * 1e-6)
+        # The live figure may show an instant before its newest observation, or one that it foretells.
+        self._meter.add(now_ns, max(now_ns - min(motion.t_ns, motion.t_newest_ns), 0) * 1e-6)
 
     def receive_health(self, health: Health, now_ns: int) -> None:
         """A process said how it is."""
@@ -101,7 +102,7 @@ class RoomState:
             motion_age_ms=max(now_ns - motion.t_newest_ns, 0) * 1e-6 if motion else None,
             latency=self._meter.latency(now_ns),
             pupil=fusion.pupil if fusion else "unknown",
-            cpu_load=fusion.cpu_load if fusion and math.isfinite(fusion.cpu_load) else None,
+            cpu_load=known(fusion.cpu_load) if fusion else None,
             cameras=[self._camera(name, name in used, now_ns) for name in self._cameras],
             processes=[self._process(heard, now_ns) for _, heard in sorted(self._health.items())],
             clients=clients,
@@ -142,8 +143,8 @@ class RoomState:
             state=state,
             reason=health.reason,
             age_s=age_ns * 1e-9,
-            cpu_cores=health.cpu_cores,
-            rss_mb=health.rss_mb,
+            cpu_cores=known(health.cpu_cores),
+            rss_mb=known(health.rss_mb),
         )
 
 

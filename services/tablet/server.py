@@ -1,8 +1,7 @@
 """The web application: the page's files, the state over REST, and the socket that carries the live figure."""
 
 import asyncio
-from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import asynccontextmanager, suppress
+from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -87,16 +86,6 @@ def create_app(server: TabletServer, page: Path | None) -> FastAPI:
         page: folder of the built page; None serves the interfaces alone.
     """
 
-    @asynccontextmanager
-    async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
-        statuses = asyncio.create_task(server.show_statuses())
-        try:
-            yield
-        finally:
-            statuses.cancel()
-            with suppress(asyncio.CancelledError):
-                await statuses
-
     # No interactive documentation: its page would load scripts from another host.
     app = FastAPI(
         title="KineBox tablet server",
@@ -104,7 +93,6 @@ def create_app(server: TabletServer, page: Path | None) -> FastAPI:
         docs_url=None,
         redoc_url=None,
         openapi_url="/api/openapi.json",
-        lifespan=lifespan,
     )
 
     @app.middleware("http")

@@ -12,7 +12,7 @@ from models.config.site import CameraConfig, Site, TabletConfig
 from models.messages import codec, topics
 from models.messages.health import CameraHealth, FusionHealth, Health
 from models.messages.motion import CameraUse, JointState, Motion
-from models.process import ProcessContext, Resources
+from models.process import Bus, ProcessContext, Resources
 from models.skeleton import coco
 from services.bus.memory import MemoryBus, MemoryRouter
 from services.tablet import process
@@ -152,24 +152,29 @@ class Room:
         bus.publish(topics.health(health.process), codec.encode(health))
 
 
+def tablet_context(bus: Bus, port: int, stop: threading.Event) -> ProcessContext:
+    """What the tablet process of such a room is given."""
+    return ProcessContext(
+        name="tablet",
+        camera=None,
+        site=_site(port),
+        rig=_rig(),
+        data=process.PAGE,
+        start_ns=time.monotonic_ns(),
+        bus=bus,
+        stop=stop,
+        resources=lambda: Resources(0.03, 61.0),
+    )
+
+
 class _Server:
     """The tablet process in a thread of its own."""
 
     def __init__(self, router: MemoryRouter, port: int) -> None:
         self._bus = router.open()
         self._stop = threading.Event()
-        self._context = ProcessContext(
-            name="tablet",
-            camera=None,
-            site=_site(port),
-            rig=_rig(),
-            data=process.PAGE,
-            start_ns=time.monotonic_ns(),
-            bus=self._bus,
-            stop=self._stop,
-            resources=lambda: Resources(0.03, 61.0),
-        )
-        self._thread = threading.Thread(target=process.main, args=(self._context,), name="tablet-server", daemon=True)
+        context = tablet_context(self._bus, port, self._stop)
+        self._thread = threading.Thread(target=process.main, args=(context,), name="tablet-server", daemon=True)
         self._thread.start()
         _wait_until_listening(port, self._thread)
 

@@ -20,9 +20,11 @@ from models.config.site import TabletConfig
 from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.health import Health
+from models.process import Subscription
 from services.tablet import motion_frame, openapi, process
 from services.tablet.audience import MAX_CLIENTS
-from tests.browser.room import CAMERAS, Room
+from services.tablet.server import TabletServer
+from tests.browser.room import CAMERAS, Room, tablet_context
 
 GENEROUS_S = 30.0
 
@@ -178,14 +180,36 @@ def test_broken_bus_messages_are_counted_and_reported(room: Room) -> None:
     bus.publish(topics.motion("live"), b"\x01\x02 broken")
     bus.publish(topics.health("edge-cam0"), b"")
     until(room, "rejected_bus_messages", 2)
-    deadline_s = time.monotonic() + GENEROUS_S
-    while time.monotonic() < deadline_s:
-        delivery = reports.receive(1.0)
-        health = codec.decode(delivery.payload, Health) if delivery else None
-        if health and health.state == "degraded":
-            assert "2 messages" in health.reason
-            return
-    pytest.fail("the tablet process never said that it could not read messages")
+    said = [next_health(reports)]
+    while not (said[-1].state == "ok" and any(health.state == "degraded" for health in said)):
+        said.append(next_health(reports))
+    assert sum(int(health.reason.split()[0]) for health in said if health.state == "degraded") == 2, "each is told once"
+
+
+def next_health(reports: Subscription) -> Health:
+    delivery = reports.receive(GENEROUS_S)
+    assert delivery is not None, "the tablet process fell silent"
+    return codec.decode(delivery.payload, Health)
+
+
+@pytest.mark.parametrize("part", ["show_statuses", "receive", "publish"])
+def test_a_part_that_fails_ends_the_process_with_its_error(
+    room: Room, monkeypatch: pytest.MonkeyPatch, part: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise ZeroDivisionError(part)
+
+    room.stop_server()
+    bus = room.join_bus()
+    if part == "show_statuses":
+        monkeypatch.setattr(TabletServer, "status", fail)
+    elif part == "receive":
+        monkeypatch.setattr(process, "_decoded", fail)
+    else:
+        monkeypatch.setattr(bus, "publish", fail)
+    with pytest.raises(ZeroDivisionError, match=part):
+        process.main(tablet_context(bus, room.port, threading.Event()))
+    assert "a part of the server failed" in capsys.readouterr().out
 
 
 def test_the_process_is_alive_on_the_bus_while_it_runs(room: Room) -> None:

@@ -1,5 +1,6 @@
 """What the page is told of the room, for every way in which a part of it can be missing."""
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -123,6 +124,37 @@ def test_rate_and_latency_are_those_of_the_last_seconds() -> None:
     assert status.latency is not None
     assert status.latency.p50_ms == pytest.approx(84.0, abs=1.0)
     assert status.latency.p95_ms == pytest.approx(89.0, abs=1.0)
+
+
+def test_latency_is_the_age_of_the_figure_and_not_of_the_newest_picture_used() -> None:
+    state = room()
+    state.receive_motion(msgspec.structs.replace(motion(T0), t_ns=T0 - 60_000_000), T0 + 20_000_000)
+    latency = state.status(T0 + 20_000_000, 0).latency
+    assert latency is not None
+    assert latency.p50_ms == pytest.approx(80.0)
+
+
+def test_a_figure_that_is_foretold_is_as_old_as_what_it_rests_on() -> None:
+    state = room()
+    state.receive_motion(msgspec.structs.replace(motion(T0), t_ns=T0 + 60_000_000), T0 + 20_000_000)
+    latency = state.status(T0 + 20_000_000, 0).latency
+    assert latency is not None
+    assert latency.p50_ms == pytest.approx(20.0)
+
+
+@pytest.mark.parametrize("nonsense", [float("nan"), float("inf"), float("-inf")])
+def test_figures_that_are_none_are_not_known_and_the_state_goes_on(nonsense: float) -> None:
+    state = room()
+    rates = CameraHealth("a", nonsense, nonsense, nonsense, 3, nonsense, "thunder", {})
+    state.receive_health(Health("edge-a", 1, T0, "ok", "", nonsense, nonsense, camera=rates), T0)
+    fusion = FusionHealth(nonsense, nonsense, nonsense, 0, {}, "found")
+    state.receive_health(Health("fusion", 2, T0, "ok", "", nonsense, nonsense, fusion=fusion), T0)
+    status = state.status(T0, 0)
+    assert judged(state, T0) == ("slow", "degraded")
+    seen = status.cameras[0]
+    assert (seen.source_hz, seen.fresh_hz, seen.target_hz, seen.backlog_ms) == (None, None, None, None)
+    assert [(process.cpu_cores, process.rss_mb) for process in status.processes] == [(None, None)] * 2
+    assert status.cpu_load is None
 
 
 def test_without_motion_there_is_no_rate_and_no_latency() -> None:

@@ -1,4 +1,4 @@
-import { Freshness, STALE_AFTER_MS, TOO_LATE_MS, underWayMs } from './connection/freshness';
+import { figureAgeMs, Freshness, STALE_AFTER_MS, TOO_LATE_MS, underWayMs } from './connection/freshness';
 import { Link } from './connection/link';
 import { phaseOf, type Phase } from './connection/phase';
 import { complete, showsSomebody, standing, unsure, type Pose } from './figure/pose';
@@ -102,7 +102,7 @@ export class Viewer {
     this.stage.show(this.pose);
     this.stage.frameOnce();
     const boxMs = this.link.clock.boxMs(nowMs);
-    if (boxMs !== null) this.noteDelay(boxMs - Number(frame.tNewestNs / 1000n) / 1000);
+    if (boxMs !== null) this.noteDelay(figureAgeMs(frame, boxMs));
   }
 
   /** Every frame that came since the picture before is dealt with. Only now, so that the next ones leave the box as late as can be. */

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { BoxClock } from '../src/connection/boxClock';
-import { Freshness, STALE_AFTER_MS, underWayMs } from '../src/connection/freshness';
+import { figureAgeMs, Freshness, STALE_AFTER_MS, underWayMs } from '../src/connection/freshness';
 import { phaseOf, type PhaseInputs } from '../src/connection/phase';
 import { reconnectDelayMs } from '../src/connection/reconnect';
 import type { MotionFrame } from '../src/protocol/motionFrame';
@@ -20,6 +20,16 @@ function frame(tNewestMs: number, serverLatencyMs = 100): MotionFrame {
     views: new Uint8Array(17),
   };
 }
+
+describe('the age of the figure', () => {
+  it('counts from the instant shown, which is older than the newest picture used', () => {
+    expect(figureAgeMs({ ...frame(1000), tNs: 940_000_000n }, 1080)).toBe(140);
+  });
+
+  it('counts from the newest picture where the figure is foretold', () => {
+    expect(figureAgeMs({ ...frame(1000), tNs: 1_030_000_000n }, 1080)).toBe(80);
+  });
+});
 
 describe('reconnecting', () => {
   it('waits 250 ms at first and never longer than 5 s', () => {

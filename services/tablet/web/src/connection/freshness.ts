@@ -40,3 +40,9 @@ export function underWayMs(frame: MotionFrame, boxNowMs: number | null): number 
   if (boxNowMs === null) return null;
   return boxNowMs - Number(frame.tNewestNs / 1000n) / 1000 - frame.serverLatencyUs / 1000;
 }
+
+/** Milliseconds since the instant that the figure shows, or, where it is foretold, since the newest picture that it rests on. */
+export function figureAgeMs(frame: MotionFrame, boxNowMs: number): number {
+  const shownNs = frame.tNs < frame.tNewestNs ? frame.tNs : frame.tNewestNs;
+  return boxNowMs - Number(shownNs / 1000n) / 1000;
+}

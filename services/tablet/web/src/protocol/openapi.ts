@@ -76,7 +76,7 @@ export interface components {
         };
         /**
          * Latency
-         * @description Milliseconds from mid-exposure of the newest observation used until the server received the motion.
+         * @description Age in milliseconds of the figure when the server received it: since the instant that it shows.
          */
         Latency: {
             /** P50 Ms */
@@ -86,7 +86,7 @@ export interface components {
         };
         /**
          * ProcessStatus
-         * @description One process of the box, as it last described itself. `age_s` is the age of that description.
+         * @description One process of the box, as it last described itself. `age_s` is the age of that description. Null is: not known.
          */
         ProcessStatus: {
             /** Name */
@@ -101,9 +101,9 @@ export interface components {
             /** Age S */
             age_s: number;
             /** Cpu Cores */
-            cpu_cores: number;
+            cpu_cores: number | null;
             /** Rss Mb */
-            rss_mb: number;
+            rss_mb: number | null;
         };
         /**
          * Status
