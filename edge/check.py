@@ -7,6 +7,7 @@ decoder of videos nor the runtime of networks is imported for files that the set
 from importlib.util import find_spec
 from pathlib import Path
 
+from edge.cameras.shape import VideoShape, read_avi_shape, require_calibrated_size, require_equal_lengths
 from edge.footage.index import INDEX_NAME, Index
 from edge.perception.network_file import read_network_file
 from models.camera.rig import Rig
@@ -17,18 +18,23 @@ NETWORKS = ("movenet-thunder", "movenet-lightning", "nanodet")
 """Whatever the governor may ask for, and the detector."""
 
 
-def check(site: Site, _rig: Rig, data: Path) -> None:
-    """Check the files of every camera, and every network that may be used.
+def check(site: Site, rig: Rig, data: Path) -> None:
+    """Check the files of every camera, whether they fit one another and the calibration, and every network that may be used.
 
     Args:
         site: the site file.
+        rig: calibration of the site's cameras.
         data: the data folder.
 
     Raises:
-        UserError: the first that is missing, truncated or damaged.
+        UserError: the first that is missing, truncated, damaged or does not fit.
     """
+    videos = {}
     for camera in site.cameras:
-        check_video(data / camera.path, camera.name)
+        shape = check_video(data / camera.path, camera.name)
+        require_calibrated_size(camera.name, shape, rig.cameras[rig.index(camera.name)].size_px)
+        videos[camera.name] = (shape, camera.rate_hz)
+    require_equal_lengths(videos)
     if site.inference.provider == "openvino" and find_spec("openvino") is None:
         raise UserError(
             'inference.provider = "openvino", but OpenVINO is not installed; install the extra of that name or set it to "cpu"'
@@ -37,19 +43,30 @@ def check(site: Site, _rig: Rig, data: Path) -> None:
         read_network_file(name, data)
 
 
-def check_video(path: Path, camera: str) -> None:
+def check_video(path: Path, camera: str) -> VideoShape:
     """Check a video file: against the set-up's index if it is described there, else by reading it.
 
     Raises:
-        UserError: it is missing, truncated or no video that can be played.
+        UserError: it is missing, truncated, may not be read or is no video that can be played.
     """
-    index = Index.read(path.parent)
-    if index is not None and path.name in index.files and path.is_file():
-        size, wanted = path.stat().st_size, index.files[path.name][0]
-        if size == wanted:
-            return
-        remedy = f"delete {path.parent / INDEX_NAME} and run `make footage`"
-        raise UserError(f"camera '{camera}': {path} has {size} bytes instead of {wanted}; {remedy}")
+    try:
+        shape = _described(path, camera)
+    except OSError as error:
+        raise UserError(f"camera '{camera}': {path} cannot be read ({error.strerror}); correct `path` or its rights") from error
+    if shape is not None:
+        return shape
     from edge.cameras.video import load_video  # noqa: PLC0415 - its decoder takes long to import
 
-    load_video(path, camera)
+    return load_video(path, camera).shape(path)
+
+
+def _described(path: Path, camera: str) -> VideoShape | None:
+    """The shape of a file that the set-up described; None if it did not, or not as an AVI file."""
+    index = Index.read(path.parent)
+    if index is None or path.name not in index.files or not path.is_file():
+        return None
+    size, wanted = path.stat().st_size, index.files[path.name][0]
+    if size != wanted:
+        remedy = f"delete {path.parent / INDEX_NAME} and run `make footage`"
+        raise UserError(f"camera '{camera}': {path} has {size} bytes instead of {wanted}; {remedy}")
+    return read_avi_shape(path)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import cv2
 import msgspec
 
+from edge.cameras.shape import require_calibrated_size
 from edge.cameras.source import Clock, Frame, MonotonicClock, PictureError, Source
 from edge.cameras.video import Schedule, VideoSource, load_video
 from edge.library import Library
@@ -54,8 +55,14 @@ def open_library(context: ProcessContext) -> Library:
 
 
 def open_source(config: CameraConfig, context: ProcessContext, clock: Clock) -> Source:
-    """The source that the site file describes."""
-    video = load_video(context.data / config.path, config.name)
+    """The source that the site file describes.
+
+    Raises:
+        UserError: its file cannot be played, or its pictures are not of the size that was calibrated.
+    """
+    path = context.data / config.path
+    video = load_video(path, config.name)
+    require_calibrated_size(config.name, video.shape(path), context.rig.cameras[context.rig.index(config.name)].size_px)
     schedule = Schedule(context.start_ns, round(config.offset_ms * MILLISECOND_NS), config.rate_hz)
     return VideoSource(video, schedule, clock)
 

@@ -24,9 +24,9 @@ def spot_picture(centre_px: Float, sigma_px: float, size_px: tuple[int, int]) ->
     return np.repeat(spot[..., None], 3, axis=2).round().astype(np.uint8)
 
 
-def write_video(path: Path, frames: int = 10) -> Path:
+def write_video(path: Path, frames: int = 10, size_px: tuple[int, int] = SIZE_PX) -> Path:
     """A Motion JPEG file whose picture k has the grey level 20 k."""
-    write_motion_jpeg(path, (plain_picture(20 * k) for k in range(frames)), Fraction(30))
+    write_motion_jpeg(path, (plain_picture(20 * k, size_px) for k in range(frames)), Fraction(30))
     return path
 
 

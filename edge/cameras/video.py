@@ -9,6 +9,7 @@ from pathlib import Path
 import av
 
 from edge.cameras.jpeg import JpegFrame, is_whole
+from edge.cameras.shape import VideoShape
 from edge.cameras.source import Clock
 from models.errors import UserError
 
@@ -22,6 +23,10 @@ class Video:
     camera: str
     size_px: tuple[int, int]
     pictures: tuple[bytes, ...]
+
+    def shape(self, path: Path) -> VideoShape:
+        """How long and large it is; `path` is where it came from."""
+        return VideoShape(path, len(self.pictures), self.size_px)
 
     def frames(self, rate_hz: float) -> Iterator[JpegFrame]:
         """Every picture once, as if played at that rate from time zero, without waiting (for benches and tests)."""
@@ -38,16 +43,16 @@ def load_video(path: Path, camera: str) -> Video:
     """Read a Motion JPEG file whole.
 
     Raises:
-        UserError: the file is missing, empty, truncated, no video, or one whose pictures do not stand alone.
+        UserError: the file is missing, empty, truncated, may not be read, is no video, or one whose pictures do not stand alone.
     """
     where = f"camera '{camera}': {path}"
-    if not path.is_file():
-        raise UserError(
-            f"{where} is missing; correct `path` in the site file (the built-in footage: python -m edge.footage.prepare)"
-        )
-    if path.stat().st_size == 0:
-        raise UserError(f"{where} is empty; copy or prepare it again")
     try:
+        if not path.is_file():
+            raise UserError(
+                f"{where} is missing; correct `path` in the site file (the built-in footage: python -m edge.footage.prepare)"
+            )
+        if path.stat().st_size == 0:
+            raise UserError(f"{where} is empty; copy or prepare it again")
         with av.open(str(path)) as container:
             if not container.streams.video:
                 raise UserError(f"{where} contains no video; give a Motion JPEG file")

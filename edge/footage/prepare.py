@@ -81,6 +81,9 @@ def main(arguments: list[str] | None = None) -> int:
     except UserError as error:
         sys.stderr.write(f"{error}\n")
         return 2
+    except OSError as error:
+        sys.stderr.write(f"footage: {error}; correct the rights of the data folder and its files, or make room on its disk\n")
+        return 2
     return 0
 
 

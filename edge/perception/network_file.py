@@ -15,7 +15,7 @@ def read_network_file(name: str, data: Path) -> bytes:
     """The network `name` of the manifest, as it was installed in the data folder.
 
     Raises:
-        UserError: it is not installed, missing or damaged.
+        UserError: it is not installed, missing, may not be read or is damaged.
     """
     folder = data / FOLDER
     # Make goes by the list alone.
@@ -24,6 +24,8 @@ def read_network_file(name: str, data: Path) -> bytes:
         installed = decode_installed((folder / FILE_NAME).read_bytes())
     except FileNotFoundError as error:
         raise UserError(f"network {name}: there are no networks in {folder}; run `make networks`") from error
+    except OSError as error:
+        raise UserError(f"network {name}: {folder / FILE_NAME} cannot be read ({error.strerror}); {remedy}") from error
     entry = installed.networks.get(name)
     if entry is None:
         raise UserError(f"network {name}: not in {folder / FILE_NAME}; {remedy}")
@@ -32,6 +34,8 @@ def read_network_file(name: str, data: Path) -> bytes:
         model = path.read_bytes()
     except FileNotFoundError as error:
         raise UserError(f"network {name}: {path} is missing; {remedy}") from error
+    except OSError as error:
+        raise UserError(f"network {name}: {path} cannot be read ({error.strerror}); {remedy}") from error
     if hashlib.sha256(model).hexdigest() != entry.sha256:
         raise UserError(f"network {name}: {path} is damaged ({len(model)} bytes, not the hash installed); {remedy}")
     return model

@@ -26,7 +26,7 @@ from models.messages.observation import Observation
 from models.process import Delivery, ProcessContext, Resources, Subscription
 from services.bus.memory import MemoryBus, MemoryRouter
 from tests.fake_networks import FakeDetector, FakePose
-from tests.small_video import spot_picture, video_of
+from tests.small_video import spot_picture, video_of, write_video
 
 NAMES = ("cam01", "cam02")
 SECOND_NS = 1_000_000_000
@@ -221,6 +221,12 @@ def test_a_missing_file_ends_the_process_with_one_line_that_names_it(tmp_path: P
     with pytest.raises(UserError, match=r"camera 'cam01'.*footage/none\.avi is missing"):
         main(context_for(bus, tmp_path, path="footage/none.avi"))
     assert bus.tokens == set()
+
+
+def test_pictures_of_another_size_than_the_calibrated_end_the_process(tmp_path: Path) -> None:
+    write_video(tmp_path / "cam01.avi", frames=3, size_px=(160, 96))
+    with pytest.raises(UserError, match=r"camera 'cam01'.*cam01\.avi are 160x96, but the calibration is for 320x240"):
+        main(context_for(MemoryRouter().open(), tmp_path))
 
 
 def test_a_camera_that_the_site_does_not_know_is_named(tmp_path: Path) -> None:

@@ -250,6 +250,17 @@ def test_the_command_leaves_with_code_2_and_one_line(
     assert re.fullmatch(r"kinebox: networks/manifest\.toml: .*nonsense.*\n", capsys.readouterr().err)
 
 
+def test_a_folder_that_cannot_be_used_is_one_line_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "networks").write_text("a file where a folder should be")
+    monkeypatch.setattr("sys.argv", ["install", "--data", str(tmp_path)])
+    with pytest.raises(SystemExit) as left:
+        setup.main()
+    assert left.value.code == 2
+    assert re.fullmatch(r"kinebox: networks: .*File exists.*; correct the rights of .*\n", capsys.readouterr().err)
+
+
 def test_a_client_that_fails_is_named_with_its_own_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     client = tmp_path / "npm"
     client.write_text("#!/bin/sh\necho 'npm error code E404' >&2\nexit 1\n")

@@ -16,8 +16,12 @@ import pytest
 from edge.check import NETWORKS
 from tests.integration.box import CAMERA, ROOT, fake_parts, write_site
 from tests.integration.waiting import free_port
+from tests.small_video import write_video
 
 pytestmark = pytest.mark.slow
+
+CALIBRATED_PX = (640, 480)
+"""As in `CAMERA`."""
 
 
 @dataclass(frozen=True)
@@ -60,11 +64,9 @@ def house(tmp_path: Path) -> House:
     write_site(tmp_path, house.page_port, house.bus_port)
     house.videos.mkdir(parents=True)
     house.networks.mkdir()
-    files = {f"{name}.avi": name.encode() * 1000 for name in "ab"}
-    for name, content in files.items():
-        (house.videos / name).write_bytes(content)
-    described = {name: {"bytes": len(content), "sha256": _hash(content)} for name, content in files.items()}
-    (house.videos / "installed.json").write_text(json.dumps({"recipe": "test", "files": described}))
+    for name in "ab":
+        write_video(house.videos / f"{name}.avi", frames=3, size_px=CALIBRATED_PX)
+    _describe(house)
     entries = {}
     for name in NETWORKS:
         content = name.encode() * 100
@@ -72,6 +74,13 @@ def house(tmp_path: Path) -> House:
         entries[name] = {"file": f"{name}.onnx", "sha256": _hash(content), "recipe": "", "sources": {}}
     (house.networks / "installed.json").write_text(json.dumps({"version": 1, "networks": entries}))
     return house
+
+
+def _describe(house: House) -> None:
+    """Write the index of the videos as they are now."""
+    files = {path.name: path.read_bytes() for path in sorted(house.videos.glob("*.avi"))}
+    described = {name: {"bytes": len(content), "sha256": _hash(content)} for name, content in files.items()}
+    (house.videos / "installed.json").write_text(json.dumps({"recipe": "test", "files": described}))
 
 
 def _hash(content: bytes) -> str:
@@ -86,6 +95,26 @@ def _replace(file: Path, old: str, new: str) -> None:
 
 def _truncate(file: Path) -> None:
     file.write_bytes(file.read_bytes()[:-10])
+
+
+def _longer_video(house: House) -> None:
+    write_video(house.videos / "b.avi", frames=4, size_px=CALIBRATED_PX)
+    _describe(house)
+
+
+def _smaller_video(house: House) -> None:
+    write_video(house.videos / "b.avi", frames=3, size_px=(320, 240))
+    _describe(house)
+
+
+def _undescribed_smaller_video(house: House) -> None:
+    _smaller_video(house)
+    (house.videos / "installed.json").unlink()
+
+
+def _folder_in_place_of(file: Path) -> None:
+    file.unlink()
+    file.mkdir()
 
 
 def _undescribed_garbage(house: House) -> None:
@@ -131,9 +160,33 @@ FAULTS: dict[str, tuple[Callable[[House], object], str]] = {
     "a video is missing": (lambda house: (house.videos / "b.avi").unlink(), r"camera 'b': .*b\.avi is missing; correct"),
     "a video is truncated": (
         lambda house: _truncate(house.videos / "b.avi"),
-        r"camera 'b': .*b\.avi has 990 bytes instead of 1000; delete .*installed\.json and run `make footage`",
+        r"camera 'b': .*b\.avi has \d+ bytes instead of \d+; delete .*installed\.json and run `make footage`",
     ),
     "a video is none": (_undescribed_garbage, r"camera 'a': .*a\.avi is not a video that can be read .*copy or prepare it again"),
+    "a video lasts longer than the others": (
+        _longer_video,
+        r"camera 'b': .*b\.avi lasts 0\.133 s \(4 pictures at 30 Hz\), but .* camera 'a', .*a\.avi, 0\.100 s .*; cut the videos",
+    ),
+    "a video is played at another rate": (
+        lambda house: _replace(house.site, 'path = "footage/b.avi"\n', 'path = "footage/b.avi"\nrate_hz = 25.0\n'),
+        r"camera 'b': .*b\.avi lasts 0\.120 s \(3 pictures at 25 Hz\), .*0\.100 s .*correct `rate_hz`",
+    ),
+    "a video has pictures of another size": (
+        _smaller_video,
+        r"camera 'b': the pictures of .*b\.avi are 320x240, but the calibration is for 640x480; scale",
+    ),
+    "a video that nobody described has pictures of another size": (
+        _undescribed_smaller_video,
+        r"camera 'b': the pictures of .*b\.avi are 320x240, but the calibration is for 640x480; scale",
+    ),
+    "a video's path cannot even be looked up": (
+        lambda house: _replace(house.site, "footage/b.avi", f"{'b' * 300}.avi"),
+        r"camera 'b': .*b\.avi .*can be read \(.*File name too long.*\)",
+    ),
+    "the list of networks cannot be read": (
+        lambda house: _folder_in_place_of(house.networks / "installed.json"),
+        r"network movenet-thunder: .*installed\.json cannot be read \(Is a directory\); delete .* and run `make networks`",
+    ),
     "no network is installed": (lambda house: shutil.rmtree(house.networks), r"network movenet-thunder: .*run `make networks`"),
     "a network is missing": (
         lambda house: (house.networks / "nanodet.onnx").unlink(),

@@ -9,6 +9,7 @@ import av
 import numpy as np
 import pytest
 
+from edge.cameras.shape import read_avi_shape
 from edge.cameras.video import load_video
 from edge.footage import prepare as footage
 from edge.footage.index import Index
@@ -69,6 +70,7 @@ def test_what_is_prepared_can_be_played_and_nothing_else_stays(registry: Registr
     )
     video = load_video(folder / "cam02.avi", "cam02")
     assert (video.size_px, len(video.pictures)) == (SIZE_PX, FRAMES)
+    assert video.shape(folder / "cam02.avi") == read_avi_shape(folder / "cam02.avi")
     assert registry.fetched == 1
 
 
@@ -133,6 +135,14 @@ def test_a_package_without_a_video_is_one_line_and_leaves_no_index(
     message = capsys.readouterr().err.splitlines()[-1]
     assert "videos/cam04.mp4" in message
     assert not footage.is_ready(tmp_path / "footage")
+
+
+def test_a_folder_that_cannot_be_used_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "footage").write_text("a file where a folder should be")
+    assert footage.main(["--data", str(tmp_path)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("footage: ")
+    assert "File exists" in line
 
 
 def test_a_video_that_cannot_be_read_names_its_camera_and_leaves_nothing(tmp_path: Path) -> None:

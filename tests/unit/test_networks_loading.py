@@ -56,6 +56,14 @@ def test_a_network_whose_file_is_gone(data: Path) -> None:
         load_network("toy", data)
 
 
+@pytest.mark.parametrize("name", ["toy.onnx", "installed.json"])
+def test_a_file_that_cannot_be_read_is_one_line_too(data: Path, name: str) -> None:
+    (data / "networks" / name).unlink()
+    (data / "networks" / name).mkdir()
+    with pytest.raises(UserError, match=rf"network toy: .*{name} cannot be read \(Is a directory\); delete .*installed\.json"):
+        load_network("toy", data)
+
+
 @pytest.mark.parametrize("damage", ["truncated", "empty", "altered"])
 def test_a_damaged_network_is_never_opened(data: Path, damage: str) -> None:
     path = data / "networks" / "toy.onnx"

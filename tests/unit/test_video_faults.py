@@ -22,6 +22,11 @@ def test_a_folder_is_no_file(tmp_path: Path) -> None:
         load_video(tmp_path, "cam03")
 
 
+def test_a_path_that_cannot_be_looked_up(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"camera 'cam03'.*can be read \(\[Errno \d+\] File name too long"):
+        load_video(tmp_path / ("a" * 300), "cam03")
+
+
 def test_empty(tmp_path: Path) -> None:
     (tmp_path / "cam.avi").touch()
     with pytest.raises(UserError, match=r"camera 'cam03'.*cam\.avi is empty"):

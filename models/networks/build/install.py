@@ -153,6 +153,10 @@ def main() -> None:
     except UserError as error:
         sys.stderr.write(f"kinebox: {error}\n")
         raise SystemExit(2) from error
+    except OSError as error:
+        folder = arguments.data / FOLDER
+        sys.stderr.write(f"kinebox: networks: {error}; correct the rights of {folder} and its files, or make room on its disk\n")
+        raise SystemExit(2) from error
     names = ", ".join(installed.networks)
     sys.stderr.write(f"Networks are ready in {arguments.data / FOLDER} ({time.monotonic() - began:.1f} s): {names}\n")
 
