@@ -1,23 +1,29 @@
 """The networks of an edge process: the first is loaded at once, the others when they are first asked for.
 
-A pose network that is asked for is loaded beside the loop, which goes on with the one that it has.
+A pose network that is asked for is loaded beside the loop, which goes on with the one that it has. If it cannot be loaded, that
+is reported, and it is tried again after a while for as long as it is asked for.
 """
 
 import threading
 from collections.abc import Callable
 
+from edge.cameras.source import Clock, MonotonicClock
 from edge.observe import PersonDetector, PoseEstimator
 from models.errors import UserError
 from models.messages.control import PoseNetwork as PoseNetworkName
 
+RETRY_NS = 10_000_000_000
+"""Reading and hashing a file costs what a few poses cost; a missing one shall not cost that with every picture."""
+
 
 class Library:
-    """Loads each network once.
+    """Loads each network once, or until it succeeds.
 
     Args:
         load_pose: returns a pose network by its name; raises UserError if its file is missing or damaged.
         load_detector: the same for the person detector.
         first: the pose network to begin with.
+        clock: tells when a failure is long enough ago.
     """
 
     def __init__(
@@ -25,14 +31,17 @@ class Library:
         load_pose: Callable[[PoseNetworkName], PoseEstimator],
         load_detector: Callable[[], PersonDetector],
         first: PoseNetworkName,
+        clock: Clock | None = None,
     ) -> None:
         self._load_pose = load_pose
         self._load_detector = load_detector
         self._poses: dict[PoseNetworkName, PoseEstimator] = {first: load_pose(first)}
         self._current = first
         self._detector: PersonDetector | None = None
+        self._clock = clock or MonotonicClock()
         self._loading: dict[str, threading.Thread] = {}
         self._problems: dict[str, str] = {}
+        self._t_failed_ns: dict[str, int] = {}
 
     @property
     def current(self) -> PoseNetworkName:
@@ -48,7 +57,7 @@ class Library:
         """The pose network of that name; until it is loaded, and if it cannot be, the one that ran last."""
         if name in self._poses:
             self._current = name
-        elif name not in self._loading:
+        elif name not in self._loading and self._may_try(name):
             self._loading[name] = threading.Thread(target=self._load, args=(name,), name=f"load-{name}", daemon=True)
             self._loading[name].start()
         return self._poses[self._current]
@@ -59,8 +68,24 @@ class Library:
             self._detector = self._load_detector()
         return self._detector
 
+    def _may_try(self, name: PoseNetworkName) -> bool:
+        t_failed_ns = self._t_failed_ns.get(name)
+        return t_failed_ns is None or self._clock.now_ns() - t_failed_ns >= RETRY_NS
+
     def _load(self, name: PoseNetworkName) -> None:
         try:
             self._poses[name] = self._load_pose(name)
+            self._problems.pop(name, None)
         except UserError as error:
-            self._problems[name] = str(error)
+            self._failed(name, str(error))
+        except Exception as error:  # noqa: BLE001 - whatever a runtime raises would end this thread unseen, and nobody would know why
+            self._failed(
+                name, f"network {name} cannot be loaded ({type(error).__name__}: {error}); if it stays so, start KineBox anew"
+            )
+        finally:
+            # Last of all: from here on the loop may start the next attempt.
+            del self._loading[name]
+
+    def _failed(self, name: PoseNetworkName, problem: str) -> None:
+        self._problems[name] = " ".join(problem.split())
+        self._t_failed_ns[name] = self._clock.now_ns()

@@ -2,10 +2,11 @@
 
 import threading
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import pytest
 
-from edge.library import Library
+from edge.library import RETRY_NS, Library
 from models.errors import UserError
 from models.messages.control import PoseNetwork as PoseNetworkName
 from tests.fake_networks import FakeDetector, FakePose
@@ -46,6 +47,46 @@ def test_a_network_that_cannot_be_loaded_is_reported_once_and_the_other_goes_on(
     assert library.pose("lightning").name == "thunder"
     assert library.problem == "network movenet-lightning is damaged"
     assert attempts == ["thunder", "lightning"]
+
+
+@dataclass
+class StoppedClock:
+    t_ns: int = 0
+
+    def now_ns(self) -> int:
+        return self.t_ns
+
+    def sleep_until(self, t_ns: int) -> None:
+        self.t_ns = t_ns
+
+
+def test_any_failure_is_reported_in_one_line_and_tried_again_after_a_while() -> None:
+    attempts: list[PoseNetworkName] = []
+
+    def load(name: PoseNetworkName) -> FakePose:
+        attempts.append(name)
+        if attempts.count("lightning") == 1 and name == "lightning":
+            raise RuntimeError("no memory\nfor the weights")
+        return FakePose(name)
+
+    clock = StoppedClock()
+    library = Library(load, FakeDetector, "thunder", clock)
+    library.pose("lightning")
+    wait_for(lambda: not loading_threads())
+    assert library.problem.startswith("network lightning cannot be loaded (RuntimeError: no memory for the weights)")
+    clock.t_ns = RETRY_NS - 1
+    assert library.pose("lightning").name == "thunder"
+    assert attempts == ["thunder", "lightning"]
+    clock.t_ns = RETRY_NS
+    library.pose("lightning")
+    wait_for(lambda: library.pose("lightning").name == "lightning")
+    wait_for(lambda: not loading_threads())
+    assert attempts == ["thunder", "lightning", "lightning"]
+    assert library.problem == ""
+
+
+def loading_threads() -> list[threading.Thread]:
+    return [thread for thread in threading.enumerate() if thread.name == "load-lightning"]
 
 
 def test_without_its_first_network_a_camera_does_not_start() -> None:
