@@ -95,7 +95,7 @@ class EdgeState:
 
 @dataclass
 class Stages:
-    """Adds up the CPU time of each stage, by a clock that is passed in (nanoseconds of this process, all threads)."""
+    """Adds up the CPU time of each stage, by a clock that is passed in (nanoseconds)."""
 
     cpu_ns: Callable[[], int]
     spent_ns: dict[str, int] = field(default_factory=dict)

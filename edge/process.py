@@ -2,6 +2,7 @@
 
 import os
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import cv2
@@ -14,6 +15,7 @@ from edge.library import Library
 from edge.meter import Meter
 from edge.observe import EdgeConfig, EdgeState, Networks, Stages, observe
 from edge.perception.detection import load_person_detector
+from edge.perception.networks import Provider
 from edge.perception.pose import load_pose_network
 from edge.turns import CONTROL_LIFETIME_NS, default_control, is_due, missed_turns
 from models.config.site import CameraConfig
@@ -31,6 +33,9 @@ MILLISECOND_NS = 1_000_000
 
 def main(context: ProcessContext) -> None:
     """Serve one camera until `context.stop` is set.
+
+    `context.start_ns` is shared by all processes of a run: epochs are counted from it. A process that is started by hand beside a
+    running box needs the box's `--start-ns`; with one of its own its epochs would lag behind, and fusion would ignore them.
 
     Raises:
         UserError: the camera, its file or the first network cannot be had.
@@ -65,6 +70,16 @@ def open_source(config: CameraConfig, context: ProcessContext, clock: Clock) -> 
     require_calibrated_size(config.name, video.shape(path), context.rig.cameras[context.rig.index(config.name)].size_px)
     schedule = Schedule(context.start_ns, round(config.offset_ms * MILLISECOND_NS), config.rate_hz)
     return VideoSource(video, schedule, clock)
+
+
+def stage_clock(provider: Provider) -> Callable[[], int]:
+    """The CPU time that stages are charged, in ns.
+
+    onnxruntime computes in the thread that calls it, so a network that loads beside the loop is not charged to a stage, from
+    which fusion's governor would conclude that a pose costs that much. OpenVINO computes in a thread of its own, so with it the
+    whole process has to count.
+    """
+    return time.process_time_ns if provider == "openvino" else time.thread_time_ns
 
 
 def _camera_config(context: ProcessContext) -> CameraConfig:
@@ -123,6 +138,7 @@ class EdgeLoop:
         self._library = library
         self._clock = clock
         self._config = EdgeConfig()
+        self._stage_clock = stage_clock(context.site.inference.provider)
         position = context.rig.index(self._camera)
         limit_hz = float(context.site.inference.max_rate_hz)
         fallback = default_control(self._camera, position, len(context.rig), context.start_ns, limit_hz)
@@ -162,7 +178,7 @@ class EdgeLoop:
 
     def _infer(self, frame: Frame, control: ViewControl) -> None:
         networks = Networks(self._library.pose(control.network), self._library.detector)
-        stages = Stages(time.process_time_ns, self._meter.spent_ns)
+        stages = Stages(self._stage_clock, self._meter.spent_ns)
         try:
             self._progress.state, observation = observe(self._progress.state, frame, networks, control, self._config, stages)
         except PictureError:
