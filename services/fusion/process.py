@@ -1,6 +1,5 @@
 """The fusion process: observations in; motion, view control and health out. Thin: all thinking is in `pipeline` and `governor`."""
 
-import os
 import time
 from dataclasses import dataclass, field
 
@@ -19,6 +18,7 @@ from services.fusion.governor import GovernorState, Load
 from services.fusion.pipeline import FusionOutput, Tick, initial_state, predict_views, step
 from services.fusion.warm_up import warm_up
 from services.support.cpu import CpuMeter
+from services.support.health import HealthReporter
 
 KEEP = 2
 """Unread messages of each topic; older ones would only show the past."""
@@ -71,6 +71,7 @@ class FusionLoop:
         self._found = False
         self._cameras: dict[str, tuple[int, CameraHealth]] = {}
         self._controls = 0
+        self._reporter = HealthReporter(context.name, context.bus, context.resources)
         self._second = _Second(time.monotonic_ns())
 
     def run(self) -> None:
@@ -94,7 +95,7 @@ class FusionLoop:
                 ticks += 1
                 tick_ns += ((now_ns - tick_ns) // period_ns + 1) * period_ns
                 if now_ns - self._second.began_ns >= SECOND_NS:
-                    self._report(now_ns)
+                    self._second_passed(now_ns)
         finally:
             subscription.close()
 
@@ -147,39 +148,30 @@ class FusionLoop:
             )
             self._bus.publish(topics.control(name), codec.encode(control))
 
-    def _report(self, now_ns: int) -> None:
+    def _second_passed(self, now_ns: int) -> None:
         second, seconds = self._second, (now_ns - self._second.began_ns) * 1e-9
         ignored = second.ignored(self._state.ignored)
         self._second = _Second(now_ns, ignored_before=dict(self._state.ignored))
         alive = {name: camera for name, (t_ns, camera) in self._cameras.items() if now_ns - t_ns < CAMERA_SILENT_NS}
         used_cores = self._cpu.used_cores()
-        load = Load(self._cpu.granted_cores, used_cores, tuple(alive.values()))
-        inference = self._context.site.inference
-        before = self._governor
+        self._govern(Load(self._cpu.granted_cores, used_cores, tuple(alive.values())), now_ns)
+        reason = _trouble([name for name in self._names if name not in alive], ignored, second.rejected)
+        fusion = FusionHealth(
+            live_hz=second.live / seconds,
+            step_ms=second.spent_ns * 1e-6 / max(second.ticks, 1),
+            cpu_load=used_cores / self._cpu.granted_cores,
+            rejected=second.rejected,
+            ignored={camera: sum(n for (name, _), n in ignored.items() if name == camera) for camera, _ in ignored},
+            pupil="found" if self._found else "searching",
+        )
+        self._reporter.report("degraded" if reason else "ok", reason, fusion=fusion)
+
+    def _govern(self, load: Load, now_ns: int) -> None:
+        inference, before = self._context.site.inference, self._governor
         self._governor = governor.step(before, load, now_ns, float(inference.max_rate_hz), inference.cpu_target)
         if self._governor.level != before.level:
             level = self._governor.current
-            log.info("governor", rate_hz=level.rate_hz, network=level.network, used_cores=round(used_cores, 2))
-        resources = self._context.resources()
-        reason = _trouble([name for name in self._names if name not in alive], ignored, second.rejected)
-        health = Health(
-            process=self._context.name,
-            pid=os.getpid(),
-            t_ns=now_ns,
-            state="degraded" if reason else "ok",
-            reason=reason,
-            cpu_cores=resources.cpu_cores,
-            rss_mb=resources.rss_mb,
-            fusion=FusionHealth(
-                live_hz=second.live / seconds,
-                step_ms=second.spent_ns * 1e-6 / max(second.ticks, 1),
-                cpu_load=used_cores / self._cpu.granted_cores,
-                rejected=second.rejected,
-                ignored={camera: sum(n for (name, _), n in ignored.items() if name == camera) for camera, _ in ignored},
-                pupil="found" if self._found else "searching",
-            ),
-        )
-        self._bus.publish(topics.health(self._context.name), codec.encode(health))
+            log.info("governor", rate_hz=level.rate_hz, network=level.network, used_cores=round(load.used_cores, 2))
 
 
 def _observation(delivery: Delivery) -> Observation:
