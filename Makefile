@@ -45,7 +45,7 @@ $(VENV)/.ready: requirements.lock pyproject.toml deploy/setup/check-machine
 	@deploy/setup/check-machine
 	@echo "Installing Python packages (about 60 s) ..."
 	@python3 -m venv $(VENV)
-	@$(VENV)/bin/pip install --disable-pip-version-check --retries 10 --require-hashes -r requirements.lock
+	@$(VENV)/bin/pip install --disable-pip-version-check --quiet --progress-bar on --retries 10 --require-hashes -r requirements.lock
 	@$(VENV)/bin/pip install --disable-pip-version-check --quiet --no-deps --no-build-isolation --editable .
 	@touch $@
 
