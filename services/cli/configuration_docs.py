@@ -11,8 +11,8 @@ _OPENING = """\
 # The site file
 
 One TOML file says what a box has and how it shall work. Unknown keys and values out of bounds are refused, in one line that names
-the key. `kinebox config check FILE` checks a file and the calibration that it names, `kinebox config show FILE` prints it with
-every value that it leaves to its default. An example is `deploy/sites/footage/site.toml`.
+the key. `kinebox config check FILE` checks a file and the calibration that it names, `kinebox config show FILE` prints it, as
+TOML, with every value that it leaves to its default. An example is `deploy/sites/footage/site.toml`.
 
 This page is written from the schema by `python -m services.cli.configuration_docs`; a test keeps it current.
 """

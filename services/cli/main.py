@@ -15,7 +15,6 @@ SiteFile = Annotated[Path, typer.Option("--site", help="The site file.", dir_oka
 DataFolder = Annotated[Path, typer.Option("--data", help="The folder with networks and footage.", file_okay=False)]
 
 app = typer.Typer(
-    help="Four cameras in a school gym, one thing to correct on the teacher's tablet.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -35,6 +34,21 @@ def main() -> None:
         sys.exit(130)
 
 
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(installed_version("kinebox"))
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    _version: Annotated[
+        bool, typer.Option("--version", help="Print the version.", callback=_print_version, is_eager=True, show_default=False)
+    ] = False,
+) -> None:
+    """Four cameras in a school gym, one thing to correct on the teacher's tablet."""
+
+
 @app.command()
 def run(site: SiteFile, data: DataFolder = Path("build")) -> None:
     """Start the whole box, watch over it, and end it on Ctrl-C."""
@@ -50,7 +64,9 @@ def process(
     site: SiteFile,
     data: DataFolder = Path("build"),
     camera: Annotated[str | None, typer.Option(help="The camera that an edge process serves.")] = None,
-    start_ns: Annotated[int | None, typer.Option(help="Monotonic time in ns that all processes count from.")] = None,
+    start_ns: Annotated[
+        int | None, typer.Option(help="Monotonic time in ns to count from, the same for all processes of one run; now if left out.")
+    ] = None,
 ) -> None:
     """Run one process of the box on its own."""
     from services.support.environment import process_environment  # noqa: PLC0415
@@ -75,19 +91,18 @@ def config_check(file: Annotated[Path, typer.Argument(help="The site file.", dir
 
 @config_app.command("show")
 def config_show(file: Annotated[Path, typer.Argument(help="The site file.", dir_okay=False)]) -> None:
-    """Print a site file with every value that it leaves to its default."""
-    import msgspec  # noqa: PLC0415
-
+    """Print a site file, as a site file, with every value that it leaves to its default."""
+    from services.cli.site_toml import render  # noqa: PLC0415
     from services.support.site_files import read_site  # noqa: PLC0415
 
     site, _ = read_site(file)
-    typer.echo(msgspec.json.format(msgspec.json.encode(site), indent=2).decode())
+    typer.echo(render(site), nl=False)
 
 
 @app.command()
 def version() -> None:
     """Print the version."""
-    typer.echo(installed_version("kinebox"))
+    _print_version(wanted=True)
 
 
 if __name__ == "__main__":

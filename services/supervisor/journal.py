@@ -1,7 +1,7 @@
 """One stream of what all processes say: everything in `logs/kinebox.log` of the data folder, and on the console what matters.
 
-On a terminal a person gets warnings, errors and the supervisor's own calm lines; without a terminal (a service) everything goes to
-stderr as it is in the file, one JSON object a line.
+The file has one JSON object a line, for programs. The console (stderr) is for people, at a terminal or in the log of a service: it
+has the warnings and errors of the processes and all that the supervisor says, as plain lines with the time of day.
 """
 
 import datetime as dt
@@ -14,6 +14,7 @@ from typing import Any, TextIO
 import msgspec
 
 from models.errors import USER_ERROR_PREFIX
+from models.process import EDGE
 
 _FILE_BYTES = 8 * 2**20
 _OLD_FILES = 3
@@ -29,7 +30,7 @@ class _LogFile(logging.handlers.RotatingFileHandler):
 class Journal:
     """Writes lines. A console that is gone or a disc that is full or read-only must not stop the box.
 
-    A file that cannot be opened is said once on the console, and the box runs on without one.
+    A file that cannot be opened is said once on the console, and the box runs on without one: then the console gets everything.
 
     Args:
         folder: where the file is kept; it is made if it is missing.
@@ -39,7 +40,6 @@ class Journal:
     def __init__(self, folder: Path, console: TextIO | None = None) -> None:
         self.path = folder / "kinebox.log"
         self._console = console or sys.stderr
-        self._person = self._console.isatty()
         self._file: _LogFile | None = None
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -54,17 +54,14 @@ class Journal:
             entry = _entry(process, "error", line.removeprefix(USER_ERROR_PREFIX))
             line = msgspec.json.encode(entry).decode()
         self._write(line)
-        if not self._person:
-            self._show(line)
-        elif entry.get("level") in _LOUD:
+        if self._file is None or entry.get("level") in _LOUD:
             self._show(_readable(entry))
 
     def say(self, event: str, *, level: str = "info", **details: str) -> None:
         """A line of the supervisor's own; a person always sees it."""
         entry = _entry("supervisor", level, event) | details
-        line = msgspec.json.encode(entry).decode()
-        self._write(line)
-        self._show(event if self._person else line)
+        self._write(msgspec.json.encode(entry).decode())
+        self._show(_readable(entry))
 
     def welcome(self, block: str) -> None:
         """Lines meant for a person only, on stdout."""
@@ -105,5 +102,19 @@ def _parse(line: str) -> dict[str, Any] | None:
 
 def _readable(entry: dict[str, Any]) -> str:
     details = " ".join(f"{key}={value}" for key, value in entry.items() if key not in _NOT_SHOWN)
-    lines = [f"{entry.get('process', '?')}: {entry.get('event', '')} {details}".rstrip()]
-    return "\n".join([*lines, *([str(entry["exception"])] if "exception" in entry else [])])
+    line = f"{_clock(entry.get('time'))}  {_speaker(entry.get('process')):12}  {entry.get('event', '')} {details}".rstrip()
+    return "\n".join([line, *([str(entry["exception"])] if "exception" in entry else [])])
+
+
+def _clock(time: object) -> str:
+    """The local time of day of an ISO time; now, if the line has none."""
+    try:
+        return dt.datetime.fromisoformat(str(time)).astimezone().strftime("%H:%M:%S")
+    except ValueError:
+        return dt.datetime.now().astimezone().strftime("%H:%M:%S")
+
+
+def _speaker(process: object) -> str:
+    name = str(process or "?")
+    camera = name.removeprefix(f"{EDGE}-")
+    return name if camera == name else f"camera {camera}"

@@ -8,6 +8,9 @@ from models.errors import USER_ERROR_CODE
 from services.supervisor.child import Child, ChildSpec
 from services.supervisor.policy import GiveUp, History, Restart, decide
 
+SETTLES_WITHIN_S = 10.0
+"""While a box starts, its parts wait for one another and rightly call themselves degraded; to a person that is no news yet."""
+
 
 @dataclass
 class Post:
@@ -18,7 +21,8 @@ class Post:
         start_at_s: when to start it next, on CLOCK_MONOTONIC; None if it runs or was given up.
         trouble: why it is being restarted; empty once it has been heard of again.
         given_up: why it was given up; empty if it was not.
-        reported: the state that its health last told.
+        reported: the state that a person was last told.
+        first_heard_s: when the running process spoke first, on CLOCK_MONOTONIC; None if it has not.
     """
 
     spec: ChildSpec
@@ -27,6 +31,7 @@ class Post:
     trouble: str = ""
     given_up: str = ""
     reported: str = "ok"
+    first_heard_s: float | None = None
     hangs: bool = False
     history: History = field(default_factory=History)
 
@@ -39,10 +44,19 @@ class Post:
         """The process was started."""
         self.child, self.start_at_s, self.hangs = child, None, False
 
+    def reports(self, state: str, now_s: float) -> bool:
+        """The process told its state: whether that is news for a person."""
+        if self.first_heard_s is None:
+            self.first_heard_s = now_s
+        if state == self.reported or (state == "degraded" and now_s - self.first_heard_s < SETTLES_WITHIN_S):
+            return False
+        self.reported = state
+        return True
+
     def ended(self, code: int, user_error: str, now_s: float, config: SupervisorConfig) -> None:
         """The process ended: decide what becomes of the post."""
         self.child = None
-        self.reported = "ok"
+        self.reported, self.first_heard_s = "ok", None
         if code == USER_ERROR_CODE and not self.hangs:
             self.given_up = user_error or describe_exit(code)
             return

@@ -10,10 +10,19 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from models.config.site import decode_site
 from tests.integration.box import ROOT, fake_parts, write_site
 from tests.integration.waiting import free_port, until
 
 pytestmark = pytest.mark.slow
+
+
+# Whatever runs the tests, nohup for one, may have left SIGHUP ignored, and children inherit that.
+AS_IF_FROM_A_TERMINAL = """
+import runpy, signal
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
+runpy.run_module("services.cli.main", run_name="__main__", alter_sys=True)
+"""
 
 
 @pytest.fixture
@@ -30,15 +39,19 @@ def kinebox(*words: str) -> "subprocess.CompletedProcess[str]":
 def running(site: Path, *words: str) -> "Iterator[subprocess.Popen[str]]":
     data = site.parent / "data"
     data.mkdir(exist_ok=True)
-    command = [sys.executable, "-m", "services.cli.main", "process", *words, "--site", str(site), "--data", str(data)]
+    command = [sys.executable, "-c", AS_IF_FROM_A_TERMINAL, "process", *words, "--site", str(site), "--data", str(data)]
     pipe = subprocess.PIPE
     with subprocess.Popen(command, env=fake_parts(site.parent), stdout=pipe, stderr=pipe, text=True, cwd=ROOT) as process:
-        yield process
-        process.kill()
+        try:
+            yield process
+        finally:
+            process.kill()
+            process.wait()
 
 
-def test_the_command_is_installed_under_its_name() -> None:
-    result = subprocess.run([Path(sys.executable).parent / "kinebox", "version"], capture_output=True, text=True, check=True)
+@pytest.mark.parametrize("word", ["version", "--version"])
+def test_the_command_is_installed_under_its_name(word: str) -> None:
+    result = subprocess.run([Path(sys.executable).parent / "kinebox", word], capture_output=True, text=True, check=True)
     assert result.stdout.strip().count(".") == 2
 
 
@@ -50,7 +63,8 @@ def test_a_good_site_file_is_said_to_be_good(site: Path) -> None:
 
 def test_a_site_file_is_shown_with_its_defaults(site: Path) -> None:
     result = kinebox("config", "show", str(site))
-    assert msgspec.json.decode(result.stdout)["fusion"] == {"preset": "default", "live_hz": 30.0}
+    assert msgspec.toml.decode(result.stdout)["fusion"] == {"preset": "default", "live_hz": 30.0}
+    assert decode_site(result.stdout.encode(), "shown") == decode_site(site.read_bytes(), site)
 
 
 def test_a_bad_site_file_is_one_line_and_code_2(site: Path) -> None:

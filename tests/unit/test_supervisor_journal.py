@@ -1,4 +1,7 @@
 import io
+import re
+import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import msgspec
@@ -7,54 +10,73 @@ import pytest
 from services.supervisor.journal import Journal
 
 
-class Terminal(io.StringIO):
-    def isatty(self) -> bool:
-        return True
-
-
 class GoneConsole(io.StringIO):
     def write(self, _text: str) -> int:
         raise BrokenPipeError
 
 
-INFO = '{"process": "fusion", "level": "info", "event": "governor", "rate_hz": 15}'
-WARNING = '{"process": "fusion", "level": "warning", "event": "message refused", "topic": "gym/x"}'
+INFO = '{"process": "fusion", "level": "info", "event": "governor", "rate_hz": 15, "time": "2026-01-02T03:04:05Z"}'
+WARNING = '{"process": "edge-cam02", "level": "warning", "event": "refused", "topic": "gym/x", "time": "2026-01-02T03:04:05Z"}'
 
 
-def test_a_person_at_a_terminal_is_not_bothered_with_information(tmp_path: Path) -> None:
-    console = Terminal()
+@pytest.fixture(autouse=True)
+def in_the_zone_of_the_school(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setenv("TZ", "XXX-2")
+    time.tzset()
+    yield
+    monkeypatch.undo()
+    time.tzset()
+
+
+def without_time(console: io.StringIO) -> list[str]:
+    lines = console.getvalue().splitlines()
+    assert all(re.match(r"\d\d:\d\d:\d\d  ", line) for line in lines)
+    return [line[10:] for line in lines]
+
+
+def test_people_get_plain_lines_in_their_own_time_and_are_not_bothered_with_information(tmp_path: Path) -> None:
+    console = io.StringIO()
     journal = Journal(tmp_path, console)
     journal.child_said("fusion", INFO)
     assert console.getvalue() == ""
-    journal.child_said("fusion", WARNING)
-    assert console.getvalue() == "fusion: message refused topic=gym/x\n"
+    journal.child_said("edge-cam02", WARNING)
+    assert console.getvalue() == "05:04:05  camera cam02  refused topic=gym/x\n"
     journal.close()
     assert journal.path.read_text().splitlines() == [INFO, WARNING]
 
 
-def test_a_service_manager_gets_every_line_as_it_is(tmp_path: Path) -> None:
+def test_the_file_has_every_line_as_json(tmp_path: Path) -> None:
     console = io.StringIO()
     journal = Journal(tmp_path, console)
     journal.child_said("fusion", INFO)
     journal.child_said("edge-a", "kinebox: camera 'a': film.avi is missing")
     journal.say("ended")
     journal.close()
-    entries = [msgspec.json.decode(line) for line in console.getvalue().splitlines()]
+    entries = [msgspec.json.decode(line) for line in journal.path.read_text().splitlines()]
     assert [(entry["process"], entry["level"], entry["event"]) for entry in entries] == [
         ("fusion", "info", "governor"),
         ("edge-a", "error", "camera 'a': film.avi is missing"),
         ("supervisor", "info", "ended"),
     ]
-    assert journal.path.read_text() == console.getvalue()
+    assert without_time(console) == ["camera a      camera 'a': film.avi is missing", "supervisor    ended"]
+
+
+@pytest.mark.parametrize("time", ['"noon"', "null", "7"])
+def test_a_line_with_no_time_that_can_be_read_is_shown_all_the_same(tmp_path: Path, time: str) -> None:
+    console = io.StringIO()
+    journal = Journal(tmp_path, console)
+    journal.child_said("fusion", f'{{"level": "error", "event": "lost", "time": {time}}}')
+    journal.close()
+    assert without_time(console) == ["?             lost"]
 
 
 @pytest.mark.parametrize("line", ["{not json", '["a list"]', "Traceback (most recent call last):", "\ufffd\ufffd"])
 def test_a_line_that_is_no_log_entry_is_kept_as_an_error(tmp_path: Path, line: str) -> None:
-    console = Terminal()
+    console = io.StringIO()
     journal = Journal(tmp_path, console)
     journal.child_said("edge-a", line)
     journal.close()
-    assert console.getvalue() == f"edge-a: {line}\n"
+    assert without_time(console) == [f"camera a      {line}"]
     assert msgspec.json.decode(journal.path.read_text())["event"] == line
 
 
@@ -76,6 +98,6 @@ def test_a_log_file_that_cannot_be_opened_is_said_once_and_does_not_stop_the_box
     journal.child_said("fusion", INFO)
     journal.say("still here")
     journal.close()
-    events = [msgspec.json.decode(line)["event"] for line in console.getvalue().splitlines()]
-    assert events[0].startswith(f"nothing is kept in {journal.path}: ")
-    assert events[1:] == ["governor", "still here"]
+    lines = without_time(console)
+    assert lines[0].startswith(f"supervisor    nothing is kept in {journal.path}: ")
+    assert lines[1:] == ["fusion        governor rate_hz=15", "supervisor    still here"]

@@ -1,0 +1,34 @@
+"""A site that is shown can be pasted back."""
+
+import msgspec
+from hypothesis import given
+from hypothesis import strategies as st
+
+from models.config.site import CameraConfig, Site, TabletConfig, decode_site
+from services.cli.site_toml import render
+
+# All that TOML can hold: halves of surrogate pairs are no characters.
+TEXTS = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=80)
+CAMERAS = st.builds(
+    CameraConfig,
+    name=st.just("a"),
+    kind=st.just("video"),
+    path=TEXTS,
+    rate_hz=st.floats(1e-9, 240),
+    offset_ms=st.floats(-1000, 1000),
+)
+SITES = st.builds(
+    lambda name, calibration, first, second, host: Site(
+        version=1,
+        name=name,
+        calibration=calibration,
+        cameras=[first, msgspec.structs.replace(second, name="b")],
+        tablet=TabletConfig(host=host),
+    ),
+    TEXTS, TEXTS, CAMERAS, CAMERAS, TEXTS,
+)  # fmt: skip
+
+
+@given(SITES)
+def test_a_site_written_and_read_again_is_the_same(site: Site) -> None:
+    assert decode_site(render(site).encode(), "shown") == site

@@ -1,0 +1,20 @@
+from services.supervisor.child import ChildSpec
+from services.supervisor.post import SETTLES_WITHIN_S, Post
+
+
+def test_what_settles_by_itself_after_a_start_is_no_news() -> None:
+    post = Post(ChildSpec("fusion"))
+    assert not post.reports("degraded", 100.0)
+    assert not post.reports("degraded", 100.0 + SETTLES_WITHIN_S - 0.1)
+    assert not post.reports("ok", 100.0 + SETTLES_WITHIN_S)
+
+
+def test_what_does_not_settle_is_told_once_and_so_is_its_end() -> None:
+    post = Post(ChildSpec("fusion"))
+    assert not post.reports("degraded", 100.0)
+    later_s = 100.0 + SETTLES_WITHIN_S
+    assert [post.reports(state, later_s) for state in ("degraded", "degraded", "ok", "ok")] == [True, False, True, False]
+
+
+def test_a_failure_is_told_at_once() -> None:
+    assert Post(ChildSpec("fusion")).reports("failed", 100.0)
