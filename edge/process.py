@@ -101,8 +101,10 @@ class _Plan:
     def at(self, now_ns: int) -> ViewControl:
         while (delivery := self.subscription.receive(0.0)) is not None:
             try:
-                self.newest = codec.decode(delivery.payload, ViewControl)
-                self.problem = ""
+                control = codec.decode(delivery.payload, ViewControl)
+                if control.camera != self.fallback.camera or abs(now_ns - control.t_ns) > CONTROL_LIFETIME_NS:
+                    raise codec.CodecError(f"it is for camera '{control.camera}' and {(now_ns - control.t_ns) * 1e-9:.1f} s old")
+                self.newest, self.problem = control, ""
             except codec.CodecError as error:
                 self.problem = f"a plan of fusion's cannot be read: {error}"
         if self.newest is not None and now_ns - self.newest.t_ns > CONTROL_LIFETIME_NS:

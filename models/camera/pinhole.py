@@ -12,6 +12,7 @@ from models.errors import UserError
 
 _UNDISTORT_ITERATIONS = 12
 _ROTATION_TOLERANCE = 1e-5
+MAX_DISTANCE_M = 1000.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +49,12 @@ class Camera:
             raise UserError(f"{where}: size_px {list(self.size_px)} is no picture; give [width, height] in pixels")
         if not (self.matrix_px[0, 0] > 0 and self.matrix_px[1, 1] > 0):
             raise UserError(f"{where}: focal lengths must be positive; check matrix_px[0][0] and matrix_px[1][1]")
+        if not np.array_equal(self.matrix_px[2], (0.0, 0.0, 1.0)) or self.matrix_px[1, 0] != 0:
+            raise UserError(f"{where}: matrix_px must be [[fx, s, cx], [0, fy, cy], [0, 0, 1]]")
+        if np.abs(self.translation_m).max() > MAX_DISTANCE_M:
+            raise UserError(f"{where}: translation_m is more than {MAX_DISTANCE_M:g} m; are its units metres?")
+        if np.abs(self.shift_px).max() > max(self.size_px):
+            raise UserError(f"{where}: shift_px is larger than the picture; calibrate this camera again")
         error = float(np.abs(self.rotation @ self.rotation.T - np.eye(3)).max())
         determinant = float(np.linalg.det(self.rotation))
         if error > _ROTATION_TOLERANCE or determinant < 0:

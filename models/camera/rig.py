@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import msgspec
 import numpy as np
@@ -11,6 +12,7 @@ from models.camera.pinhole import Camera
 from models.errors import UserError
 
 RIG_VERSION = 1
+MIN_BASELINE_M = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,9 +100,17 @@ def decode_rig(data: bytes, origin: str) -> Rig:
     if record.version != RIG_VERSION:
         raise UserError(f"calibration {origin}: version {record.version} is not known to this KineBox ({RIG_VERSION})")
     try:
-        return Rig(tuple(_camera(entry) for entry in record.camera))
+        rig = Rig(tuple(_camera(entry) for entry in record.camera))
+        _require_depth(rig)
     except UserError as error:
         raise UserError(f"calibration {origin}: {error}") from error
+    return rig
+
+
+def _require_depth(rig: Rig) -> None:
+    for a, b in combinations(rig, 2):
+        if np.linalg.norm(a.centre_m - b.centre_m) < MIN_BASELINE_M:
+            raise UserError(f"cameras '{a.name}' and '{b.name}' are in the same place, so they see no depth; calibrate again")
 
 
 def _camera(record: _CameraRecord) -> Camera:

@@ -4,9 +4,10 @@ from typing import Literal
 
 import msgspec
 
-from models.messages.observation import Crop
+from models.messages.observation import MAX_PX, Crop
 
 PoseNetwork = Literal["thunder", "lightning"]
+MAX_RATE_HZ = 1000.0
 
 
 class CropPrediction(msgspec.Struct, frozen=True):
@@ -17,8 +18,12 @@ class CropPrediction(msgspec.Struct, frozen=True):
     velocity_x_px_s: float
     velocity_y_px_s: float
 
+    def __post_init__(self) -> None:
+        if not all(abs(value) <= MAX_PX for value in (self.velocity_x_px_s, self.velocity_y_px_s)):
+            raise ValueError(f"a crop's velocity must be within +-{MAX_PX:g} px/s")
+
     def at(self, t_ns: int) -> Crop:
-        """The crop carried at constant velocity to `t_ns` (CLOCK_MONOTONIC)."""
+        """The crop carried at constant velocity to `t_ns` (CLOCK_MONOTONIC), which must not be far from its own time."""
         seconds = (t_ns - self.t_ns) * 1e-9
         return Crop(
             self.crop.centre_x_px + self.velocity_x_px_s * seconds,
@@ -50,3 +55,7 @@ class ViewControl(msgspec.Struct, frozen=True):
     network: PoseNetwork
     search: bool
     prediction: CropPrediction | None
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.rate_hz <= MAX_RATE_HZ:
+            raise ValueError(f"rate_hz must be within 0 and {MAX_RATE_HZ:g}, not {self.rate_hz}")

@@ -8,6 +8,9 @@ import numpy as np
 from models.arrays import Float, Float32
 from models.skeleton import coco
 
+MAX_PX = 1e6
+"""No picture is larger; what lies beyond is no observation but a mistake."""
+
 
 class Crop(msgspec.Struct, frozen=True):
     """A square region of a camera's picture that is handed to the pose network.
@@ -20,6 +23,11 @@ class Crop(msgspec.Struct, frozen=True):
     centre_y_px: float
     side_px: float
     angle_rad: float = 0.0
+
+    def __post_init__(self) -> None:
+        values = (self.centre_x_px, self.centre_y_px, self.side_px, self.angle_rad)
+        if not all(math.isfinite(value) and abs(value) <= MAX_PX for value in values) or self.side_px <= 0:
+            raise ValueError(f"a crop needs finite numbers within +-{MAX_PX:g} and a positive side, not {values}")
 
     def to_image(self, points: Float) -> Float:
         """Crop coordinates (..., 2) in [0, 1] (x right, y down) to image pixels (..., 2)."""
@@ -58,6 +66,10 @@ class Person(msgspec.Struct, frozen=True, eq=False):
         require_array("keypoints_px", self.keypoints_px, (coco.COUNT, 2))
         require_array("sigma_px", self.sigma_px, (coco.COUNT,))
         require_array("score", self.score, (coco.COUNT,))
+        if np.abs(self.keypoints_px).max() > MAX_PX or self.sigma_px.max() > MAX_PX or self.sigma_px.min() <= 0:
+            raise ValueError(f"keypoints_px must be within +-{MAX_PX:g} and sigma_px within (0, {MAX_PX:g}]")
+        if self.score.min() < 0 or self.score.max() > 1:
+            raise ValueError("score must be within [0, 1]")
 
 
 class Observation(msgspec.Struct, frozen=True, eq=False):

@@ -26,7 +26,10 @@ _NOBODY = Pose(
     np.full(coco.COUNT, JointState.UNKNOWN, np.uint8),
     np.zeros(coco.COUNT, np.uint32),
 )
-_MAX_FUTURE_S = 1.0
+_MAX_FUTURE_S = 0.25
+"""A picture further ahead of the newest tick is refused; the smoother's window must still reach back to what is read out."""
+_OUTVOTED_S = 1.0
+"""Cameras that have shown an epoch for this long count; so long must the newest epoch have lasted to be given up."""
 _MAX_GRID = 8
 """Smooth instants that one tick may give; a longer pause of the ticks leaves a hole."""
 
@@ -64,6 +67,8 @@ class FusionState:
         grid: index of the next smooth instant, None before the first.
         sequences: motions given out, by kind.
         ignored: observations that were not fused, by camera and reason.
+        stragglers_s: when each camera last showed an epoch that is past.
+        outvoted: cameras that were ahead of most others; they open no epoch until they agree with another one.
     """
 
     views: Views
@@ -73,6 +78,8 @@ class FusionState:
     grid: int | None = None
     sequences: dict[str, int] = field(default_factory=lambda: {"live": 0, "smooth": 0})
     ignored: dict[tuple[str, str], int] = field(default_factory=dict)
+    stragglers_s: dict[str, float] = field(default_factory=dict)
+    outvoted: set[str] = field(default_factory=set)
 
 
 def initial_state(rig: Rig, config: FusionConfig) -> FusionState:  # noqa: ARG001 - the signature of every step function's start
@@ -104,6 +111,8 @@ def _observe(state: FusionState, observation: Observation, config: FusionConfig)
     if state.tick_ns and t_s > state.tick_ns * 1e-9 + _MAX_FUTURE_S:
         return "from the future"
     if not state.epochs or observation.epoch > state.epochs[-1].epoch:
+        if observation.camera in state.outvoted:
+            return "of an epoch that no other camera shows"
         _open_epoch(state, observation.epoch, t_s)
     for index, reconstruction in enumerate(state.epochs):
         if reconstruction.epoch == observation.epoch:
@@ -112,8 +121,24 @@ def _observe(state: FusionState, observation: Observation, config: FusionConfig)
             persons = sightings(observation, state.views, config.sighting)
             reconstruction.observe(state.views.index[observation.camera], t_s, persons, config)
             state.seams_s[index] = min(state.seams_s[index], t_s)
+            state.outvoted.discard(observation.camera)
             return ""
+    state.stragglers_s[observation.camera] = t_s
+    if _outvoted(state, t_s):
+        newest_s = state.epochs[-1].newest_s
+        state.outvoted = {name for name, index in state.views.index.items() if newest_s[index] > t_s - _OUTVOTED_S}
+        state.epochs.clear()
+        state.seams_s.clear()
+        state.stragglers_s.clear()
     return "of a past epoch"
+
+
+def _outvoted(state: FusionState, t_s: float) -> bool:
+    """Whether more cameras are in a past epoch than in the newest: one camera's wrong count must not blind the room."""
+    newest_s = state.epochs[-1].newest_s
+    present = int((newest_s > t_s - _OUTVOTED_S).sum())
+    past = sum(seen_s > t_s - _OUTVOTED_S for seen_s in state.stragglers_s.values())
+    return past > present and t_s - state.seams_s[-1] > _OUTVOTED_S
 
 
 def _open_epoch(state: FusionState, epoch: int, t_s: float) -> None:

@@ -25,6 +25,8 @@ from services.fusion.timing import Tracks
 from services.fusion.views import Views
 from services.fusion.window import BAND, assemble
 
+_NO_CERTAINTY_M2 = 1e6 * np.eye(3)
+
 
 class Equations:
     """Room for the normal equations, used anew in every step: `window.py` and `banded.py` say what is in it."""
@@ -113,7 +115,10 @@ class Smoother:
         self.positions_m[from_knot:] = self.positions_m[from_knot:, :, order]
 
     def step(self, tracks: Tracks, views: Views, limbs: LimbLengths, instants_s: Float, memories_s: Float) -> Smoothed:
-        """Improve all positions, and read out n instants (n,), naming views that agree within `memories_s` (n,) of each."""
+        """Improve all positions, and read out n instants (n,), naming views that agree within `memories_s` (n,) of each.
+
+        An instant before the window has no view and no certainty.
+        """
         config, equations = self._config, self._equations
         start_s, frame_s = self.first * self._frame_s, self._frame_s
         held = max(tracks.newest_s(slot) for slot in range(len(views))) / frame_s - self.first
@@ -128,8 +133,10 @@ class Smoother:
             np.copyto(self.positions_m, equations.solution, where=alive)
         self.known |= alive[:, None]
         # The later of the two positions around an instant is the less certain one.
-        later = np.minimum(np.ceil(instants_s / frame_s - self.first - 1e-6).astype(np.int64), config.knots - 1)
-        covariance = inverse_blocks(equations.matrix, equations.pivots, 3 * later)
+        later = np.ceil(instants_s / frame_s - self.first - 1e-6).astype(np.int64)
+        covariance = inverse_blocks(equations.matrix, equations.pivots, 3 * np.clip(later, 0, config.knots - 1))
         self.covariance_m2 = covariance[0]
         points, views_seen = read_window(self.positions_m, alive, *pictures, held, config.carry_s / frame_s, instants_s, memories_s)
+        before = later < 0
+        points[before], covariance[before], views_seen[before] = 0.0, _NO_CERTAINTY_M2, 0
         return Smoothed(points, covariance, views_seen)

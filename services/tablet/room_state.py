@@ -66,6 +66,7 @@ class RoomState:
         self._cameras = cameras
         self._wished_hz = wished_hz
         self._started_ns = started_ns
+        self._processes = {ROUTER, "tablet", "supervisor", *(process_name(EDGE, camera) for camera in cameras)}
         self._health: dict[str, HeardHealth] = {}
         self._presence: dict[str, Presence] = {}
         self._motion: Motion | None = None
@@ -80,11 +81,16 @@ class RoomState:
         self._meter.add(now_ns, max(now_ns - min(motion.t_ns, motion.t_newest_ns), 0) * 1e-6)
 
     def receive_health(self, health: Health, now_ns: int) -> None:
-        """A process said how it is."""
+        """A process said how it is; one that the site does not have is refused, so that nothing grows."""
+        if health.process not in self._processes:
+            self.rejected_bus_messages += 1
+            return
         self._health[health.process] = HeardHealth(health, now_ns)
 
     def set_alive(self, process: str, alive: bool, now_ns: int) -> None:
         """A process joined or left the bus."""
+        if process not in self._processes:
+            return
         before = self._presence.get(process)
         if alive and before is not None and not before.alive:
             self._health.pop(process, None)  # what its predecessor said is no news of this one

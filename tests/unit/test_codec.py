@@ -117,3 +117,30 @@ def test_a_decoded_array_can_be_written_to() -> None:
     decoded = codec.decode(codec.encode(good), Observation)
     decoded.persons[0].keypoints_px[0, 0] = 5.0
     assert decoded.persons[0].keypoints_px[0, 0] == 5.0
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"rate_hz": float("nan")}, "rate_hz"),
+        ({"rate_hz": -5.0}, "rate_hz"),
+        ({"rate_hz": float("inf")}, "rate_hz"),
+    ],
+)
+def test_a_plan_that_cannot_be_kept_is_refused_by_the_reader(change: dict[str, float], reason: str) -> None:
+    good = examples()["control"]
+    fields = {name: getattr(good, name) for name in ViewControl.__struct_fields__} | change
+    with pytest.raises(codec.CodecError, match=reason):
+        codec.decode(codec.encode(good)[:2] + codec._ENCODER.encode(fields), ViewControl)
+
+
+@pytest.mark.parametrize("side_px", [float("nan"), float("inf"), 0.0, -3.0, 1e300])
+def test_a_crop_that_is_no_region_is_refused_by_the_reader(side_px: float) -> None:
+    good = examples()["control"]
+    assert isinstance(good, ViewControl)
+    assert good.prediction is not None
+    crop = {"centre_x_px": 1.0, "centre_y_px": 2.0, "side_px": side_px, "angle_rad": 0.0}
+    prediction = {"crop": crop, "t_ns": 9, "velocity_x_px_s": 0.0, "velocity_y_px_s": 0.0}
+    fields = {name: getattr(good, name) for name in ViewControl.__struct_fields__} | {"prediction": prediction}
+    with pytest.raises(codec.CodecError, match="crop"):
+        codec.decode(codec.encode(good)[:2] + codec._ENCODER.encode(fields), ViewControl)
