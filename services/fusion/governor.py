@@ -33,12 +33,17 @@ LADDER: Final = (
 small network's noise 60 % (measured on simulated throws; see docs/decisions/0003-governor.md)."""
 
 START: Final = 2
-_RELATIVE_COST: Final = {"thunder": 1.0, "lightning": 0.35}
+_RELATIVE_COST: Final = {"thunder": 1.0, "lightning": 0.4}
+"""Whole inferences, decoding and cropping included."""
 _PATIENCE_S: Final = 5.0
 _FIRST_PENALTY_S: Final = 15.0
 _LONGEST_PENALTY_S: Final = 240.0
 _SHORTFALL: Final = 0.85
 _SETTLING_S: Final = 2.5
+_STARTING_S: Final = 8.0
+"""While everything loads, searches and detects at once, nothing is learnt about what comes after."""
+_COST_DRIFT: Final = 1.02
+"""What an inference costs is its least in calm seconds, forgotten by 2 % a second; what a busy machine adds is in its load."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +66,7 @@ class GovernorState:
     """Where on the ladder, since when, and which rungs are not to be tried again before their time."""
 
     level: int = START
+    started_ns: int | None = None
     since_ns: int = 0
     ceiling: int = 0
     ceiling_until_ns: int = 0
@@ -83,13 +89,16 @@ def step(state: GovernorState, load: Load, t_ns: int, max_rate_hz: float, cpu_ta
         max_rate_hz: rungs above this rate are never taken.
         cpu_target: share of `granted_cores` that may be filled.
     """
-    state = _learn_cost(state, load)
+    if state.started_ns is None:
+        state = replace(state, started_ns=t_ns)
     best = next(index for index, level in enumerate(LADDER) if level.rate_hz <= max_rate_hz)
     if state.level < best:
         return _move(state, best, t_ns)
     settled_s = (t_ns - state.since_ns) * 1e-9
-    if not load.cameras or settled_s < _SETTLING_S:
+    started_s = (t_ns - (state.started_ns or 0)) * 1e-9
+    if not load.cameras or settled_s < _SETTLING_S or started_s < _STARTING_S:
         return state
+    state = _learn_cost(state, load)
     if _falls_behind(state, load):
         return _step_down(state, t_ns)
     if t_ns >= state.ceiling_until_ns:
@@ -111,8 +120,8 @@ def turn_offset_ns(position: int, cameras: int, rate_hz: float) -> int:
 
 def predicted_cores(state: GovernorState, load: Load, level: Level) -> float:
     """CPU that would be in use on that rung: what is in use now, less today's inferences, plus that rung's."""
-    now = sum(camera.fresh_hz * _cost_ms(state, camera.network) for camera in load.cameras) / 1e3
-    then = len(load.cameras) * level.rate_hz * _cost_ms(state, level.network) / 1e3
+    now = sum(camera.fresh_hz * _cost_ms(state, load, camera.network) for camera in load.cameras) / 1e3
+    then = len(load.cameras) * level.rate_hz * _cost_ms(state, load, level.network) / 1e3
     return max(load.used_cores - now, 0.0) + then
 
 
@@ -157,15 +166,15 @@ def _learn_cost(state: GovernorState, load: Load) -> GovernorState:
         measured = [sum(camera.stage_ms.values()) for camera in load.cameras if camera.network == network and camera.fresh_hz > 0]
         if measured:
             mean = sum(measured) / len(measured)
-            costs[network] = mean if network not in costs else 0.7 * costs[network] + 0.3 * mean
+            costs[network] = min(mean, costs.get(network, mean) * _COST_DRIFT)
     return replace(state, cost_ms=tuple(sorted(costs.items())))
 
 
-def _cost_ms(state: GovernorState, network: str) -> float:
+def _cost_ms(state: GovernorState, load: Load, network: str) -> float:
+    """What an inference costs; of a network that does not run, no more than what the running one lets expect."""
     costs = dict(state.cost_ms)
-    if network in costs:
+    running = {camera.network for camera in load.cameras} & costs.keys() & _RELATIVE_COST.keys()
+    expected = [costs[other] * _RELATIVE_COST[network] / _RELATIVE_COST[other] for other in running if network in _RELATIVE_COST]
+    if network in running:
         return costs[network]
-    for other, measured in costs.items():
-        if other in _RELATIVE_COST and network in _RELATIVE_COST:
-            return measured * _RELATIVE_COST[network] / _RELATIVE_COST[other]
-    return 0.0
+    return min([*expected, *([costs[network]] if network in costs else [])], default=0.0)

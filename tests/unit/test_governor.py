@@ -9,6 +9,7 @@ from models.messages.health import CameraHealth
 from services.fusion import governor
 from services.fusion.governor import LADDER, GovernorState, Load
 
+RUNNING = GovernorState(started_ns=0)
 COST_MS = {"thunder": 28.0, "lightning": 10.0}
 
 
@@ -55,6 +56,21 @@ def test_the_best_rate_that_fits_is_found_and_kept(cores: float, slowness: float
     assert set(last) == {expected}
 
 
+def test_the_rush_of_the_start_neither_lowers_the_rate_nor_spoils_the_plan_for_later() -> None:
+    states = [GovernorState()]
+    for second in range(1, 9):
+        slow = CameraHealth("cam", 30.0, 4.0, 10.0, 9, 200.0, "thunder", {"pose": 75.0, "detect": 40.0})
+        states.append(governor.step(states[-1], Load(2.0, 2.0, [slow] * 4), second * 10**9, 30.0, 0.85))
+    assert {state.level for state in states} == {governor.START}
+    assert run(Box(2.0), 120, states[-1], 8)[-1].level == governor.START
+
+
+def test_what_a_network_cost_in_a_bad_minute_is_not_held_against_it_for_ever() -> None:
+    bad = run(Box(2.0, slowness=3.0), 60)[-1]
+    assert LADDER[bad.level].network == "lightning"
+    assert run(Box(2.0), 300, bad, 60)[-1].level == governor.START
+
+
 def test_a_box_that_becomes_busy_steps_down_and_climbs_again_when_it_is_free() -> None:
     calm = run(Box(2.0), 60)
     busy = run(Box(2.0, base_cores=1.5), 60, calm[-1], 60)
@@ -82,7 +98,7 @@ def test_the_rate_never_exceeds_what_the_site_allows() -> None:
 
 
 def test_one_slow_camera_does_not_slow_the_others() -> None:
-    state = GovernorState()
+    state = RUNNING
     load = Box(2.0).second(state)
     ill = CameraHealth("cam", 30.0, 2.0, 10.0, 50, 90.0, "thunder", {"pose": 28.0})
     moved = governor.step(state, Load(2.0, 1.4, [*load.cameras[:3], ill]), 10**10, 30.0, 0.85)
@@ -91,7 +107,7 @@ def test_one_slow_camera_does_not_slow_the_others() -> None:
 
 def test_a_slow_source_is_not_taken_for_a_short_cpu() -> None:
     slow = CameraHealth("cam", 8.0, 8.0, 10.0, 0, 5.0, "thunder", {"pose": 28.0})
-    moved = governor.step(GovernorState(), Load(2.0, 1.4, [slow] * 4), 10**10, 10.0, 0.85)
+    moved = governor.step(RUNNING, Load(2.0, 1.4, [slow] * 4), 10**10, 10.0, 0.85)
     assert moved.level == governor.START
 
 
@@ -99,12 +115,12 @@ def test_a_slow_source_is_not_taken_for_a_short_cpu() -> None:
 def test_a_dead_or_slow_source_does_not_hide_that_the_others_fall_behind(source_hz: float) -> None:
     behind = CameraHealth("cam", 30.0, 3.0, 10.0, 50, 90.0, "thunder", {"pose": 28.0})
     ill = CameraHealth("ill", source_hz, min(source_hz, 3.0), 10.0, 0, 5.0, "thunder", {"pose": 28.0})
-    moved = governor.step(GovernorState(), Load(4.0, 1.4, [behind, behind, behind, ill]), 10**10, 10.0, 0.85)
+    moved = governor.step(RUNNING, Load(4.0, 1.4, [behind, behind, behind, ill]), 10**10, 10.0, 0.85)
     assert moved.level == governor.START + 1
 
 
 def test_no_camera_alive_changes_nothing() -> None:
-    assert governor.step(GovernorState(), Load(2.0, 0.1, []), 10**10, 30.0, 0.85) == GovernorState()
+    assert governor.step(RUNNING, Load(2.0, 0.1, []), 10**10, 30.0, 0.85) == RUNNING
 
 
 def test_the_cameras_take_turns_evenly() -> None:
