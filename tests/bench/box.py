@@ -45,7 +45,6 @@ BARS = {
     "fresh_hz.min": (">=", 10.0),
     "latency_ms.p95": ("<=", 250.0),
     "rss_growth_pct": ("<=", 2.0),
-    "half_quota.live_fps": (">=", 29.95),
     "half_quota.fresh_hz.min": (">=", 5.0),
 }
 

@@ -1,10 +1,13 @@
 import type { Phase } from '../connection/phase';
 import type { Status } from '../protocol/messages';
+import { boxIsBusy } from './cameras';
 
 /** What the words on the page are made of. Changes a few times a second; poses never come through here. */
 export class Room {
   phase = $state<Phase>('connecting');
   status = $state.raw<Status | null>(null);
+  /** The page says once that the box is busy, in the place of the same words on every camera. */
+  busy = $derived(this.phase === 'live' && boxIsBusy(this.status?.cameras ?? []));
   /** Age of the figure on the screen, in whole seconds; null while there is none. */
   figureAgeS = $state<number | null>(null);
   /** From the shutter to this screen; null while it cannot be known. */

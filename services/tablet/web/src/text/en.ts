@@ -49,6 +49,9 @@ const phases: Record<Phase, { pill: string; title: string; words: string }> = {
   live: { pill: 'Live', title: '', words: '' },
 };
 
+/** The networks' names mean nothing to a teacher; the technician reads them in the details. */
+const ways: Record<string, string> = { thunder: 'exact', lightning: 'fast' };
+
 const seconds = (s: number): string => (s === 1 ? '1 second' : `${s} seconds`);
 const number = (value: number | null, digits = 0): string => (value === null ? '–' : value.toFixed(digits));
 
@@ -56,6 +59,7 @@ export const text = {
   product: 'KineBox',
   side: 'State of the room',
   phases,
+  gettingReady: { title: 'Cameras are getting ready', words: 'One moment.' },
   staleFor: (s: number): string => `No new movement for ${seconds(s)}`,
 
   view: {
@@ -71,7 +75,7 @@ export const text = {
     name: (index: number): string => `Camera ${index + 1}`,
     states: { ok: 'Good', slow: 'Slow', lost: 'Lost', starting: 'Starting', unknown: 'Not known' },
     reasons,
-    rate: (hz: number): string => `${hz.toFixed(0)} a second`,
+    way: (network: string | null): string => ways[network ?? ''] ?? '',
     none: 'Not known without a connection',
     /** One line for the teacher: who is missing, and whether the lesson can go on. */
     lost: (lost: number[], left: number): string => {
@@ -79,6 +83,7 @@ export const text = {
       if (left >= 2) return `${who} – the lesson goes on with ${COUNTS[left] ?? left}`;
       return `${who} – two cameras are needed for a figure`;
     },
+    busy: 'The box is busy – fast movement may be missed',
     slow: (slow: number[], all: boolean): string => {
       if (all) return 'All cameras are slow – fast movement may be missed';
       return slow.length === 1 ? `Camera ${slow[0]} is slow` : `Cameras ${listed(slow)} are slow`;
@@ -102,6 +107,11 @@ export const text = {
     connection: 'This tablet',
     box: 'The box',
     noData: 'Nothing is known without a connection to the box.',
+    legend: [
+      ['Fresh / wished', 'pictures a second that were looked at, and that the box asked for'],
+      ['Waiting', 'how long a picture waits until it is looked at'],
+      ['Network', 'thunder is exact, lightning is fast'],
+    ],
     columns: {
       camera: 'Camera',
       fresh: 'Fresh / wished, Hz',
@@ -129,7 +139,7 @@ export const text = {
     dropped: 'Dropped as too late',
     unreadable: 'Could not be read',
     processor: 'Processor in use',
-    epoch: 'Recording loop',
+    epoch: 'Footage repeated',
     clients: 'Tablets',
     rejected: 'Rejected from bus / tablets',
     ms: (value: number | null): string => (value === null ? '–' : `${value.toFixed(0)} ms`),

@@ -1,0 +1,24 @@
+/** What several cameras say together, where each alone would say it again and again. */
+
+import type { CameraStatus } from '../protocol/messages';
+
+/** Slowness that the box causes, not the camera. */
+const OF_THE_BOX: ReadonlySet<CameraStatus['reason']> = new Set(['behind', 'backlog', 'sparse']);
+/** A camera that sends hardly more than is looked at is slow by itself. */
+const SOURCE_MARGIN = 1.25;
+
+/** No camera works yet, and at least one is about to: nothing can be said of who is in view. */
+export function gettingReady(cameras: readonly CameraStatus[]): boolean {
+  const working = cameras.some((camera) => camera.state === 'ok' || camera.state === 'slow');
+  return !working && cameras.some((camera) => camera.state === 'starting');
+}
+
+/** All cameras are slow, and all because the box has too much to do. */
+export function boxIsBusy(cameras: readonly CameraStatus[]): boolean {
+  return cameras.length > 0 && cameras.every(slowedByTheBox);
+}
+
+function slowedByTheBox(camera: CameraStatus): boolean {
+  if (camera.state !== 'slow' || !OF_THE_BOX.has(camera.reason)) return false;
+  return camera.source_hz === null || camera.fresh_hz === null || camera.source_hz > SOURCE_MARGIN * camera.fresh_hz;
+}
