@@ -198,6 +198,21 @@ def test_a_phone_shows_figure_and_cameras_without_sideways_scrolling(browser: Br
     page.close()
 
 
+@pytest.mark.parametrize(("width", "height"), [(390, 844), (844, 390)])
+def test_a_warning_on_a_phone_stands_above_the_figure(browser: Browser, room: Room, width: int, height: int) -> None:
+    with_scene(room, fresh_hz=5.0)
+    page = browser.new_page(viewport={"width": width, "height": height}, has_touch=True, is_mobile=True)
+    open_live(page, room)
+    warning = page.get_by_text("The box is busy")
+    warning.wait_for()
+    banner, canvas = warning.bounding_box(), page.locator("canvas").bounding_box()
+    assert banner is not None
+    assert canvas is not None
+    assert banner["y"] + banner["height"] <= canvas["y"]
+    assert page.evaluate("document.documentElement.scrollHeight <= window.innerHeight"), "the page is no taller than the window"
+    page.close()
+
+
 @pytest.mark.parametrize("phase", ["live", "lost", "offline", "details"])
 def test_the_page_is_accessible(page: Page, room: Room, phase: str) -> None:
     shown = open_live(page, room)
