@@ -43,7 +43,8 @@ def _missing(reason: str) -> None:
     pytest.skip(reason)
 
 
-@pytest.fixture(scope="session")
+# Not for the session: while Playwright runs, this thread has an event loop that other tests would trip over.
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     if not (process.PAGE / "index.html").is_file():
         _missing("the page is not built: run 'make web'")

@@ -1,14 +1,16 @@
 """A rig that is written is read back to the last digit."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from models.arrays import Float
 from models.camera.pinhole import Camera
-from models.camera.rig import Rig, decode_rig, encode_rig
+from models.camera.rig import MIN_BASELINE_M, Rig, decode_rig, encode_rig
 
 numbers = st.floats(-1e4, 1e4)
 
@@ -37,14 +39,15 @@ cameras = st.builds(
     arrays(np.float64, 2, elements=numbers),
     arrays(np.float64, 5, elements=st.floats(-1, 1)),
     arrays(np.float64, 3, elements=st.floats(-2, 2)),
-    arrays(np.float64, 3, elements=numbers),
-    arrays(np.float64, 2, elements=numbers),
+    arrays(np.float64, 3, elements=st.floats(-900, 900)),
+    arrays(np.float64, 2, elements=st.floats(-15, 15)),
 )
 
 
 @pytest.mark.slow
 @given(st.lists(cameras, min_size=1, max_size=4, unique_by=lambda camera: camera.name), st.text())
 def test_round_trip(written: list[Camera], source: str) -> None:
+    assume(all(np.linalg.norm(a.centre_m - b.centre_m) > 2 * MIN_BASELINE_M for a, b in combinations(written, 2)))
     read = decode_rig(encode_rig(Rig(tuple(written)), source), "rig.toml")
     assert read.names == tuple(camera.name for camera in written)
     for a, b in zip(written, read, strict=True):
