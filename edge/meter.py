@@ -19,6 +19,9 @@ class Meter:
     camera: str
     t_report_ns: int
     t_picture_ns: int
+    t_in_vain_ns: int = 0
+    t_mid_ns: int | None = None
+    t_mid_reported_ns: int | None = None
     skipped: int = 0
     pictures: int = 0
     inferred: int = 0
@@ -26,10 +29,15 @@ class Meter:
     backlog_ns: int = 0
     spent_ns: dict[str, int] = field(default_factory=dict)
 
-    def grabbed(self, t_now_ns: int, pictures: int) -> None:
-        """A grab moved the source on by that many pictures."""
+    def grabbed(self, t_now_ns: int, t_mid_ns: int, pictures: int) -> None:
+        """A grab moved the source on by that many pictures, the newest of that instant."""
         self.pictures += pictures
         self.t_picture_ns = t_now_ns
+        self.t_mid_ns = t_mid_ns
+
+    def in_vain(self, t_now_ns: int) -> None:
+        """A grab ran out of time: only then is it the camera that shows nothing, and not this process that did not look."""
+        self.t_in_vain_ns = t_now_ns
 
     def waited(self, age_ns: int) -> None:
         """A picture had this age when its turn came."""
@@ -42,10 +50,10 @@ class Meter:
     def report(self, t_now_ns: int, target_hz: float, network: str, problem: str, used: Resources) -> Health:
         """The health message of the time since the last report; counting begins anew."""
         seconds = max(1e-9, (t_now_ns - self.t_report_ns) * 1e-9)
-        reason = self._reason(t_now_ns, problem)
+        reason = self._reason(problem)
         camera = CameraHealth(
             camera=self.camera,
-            source_hz=self.pictures / seconds,
+            source_hz=self._source_hz(seconds),
             fresh_hz=self.inferred / seconds,
             target_hz=target_hz,
             skipped=self.skipped,
@@ -56,6 +64,7 @@ class Meter:
         self.pictures = self.inferred = self.damaged = self.backlog_ns = 0
         self.spent_ns = dict.fromkeys(self.spent_ns, 0)
         self.t_report_ns = t_now_ns
+        self.t_mid_reported_ns = self.t_mid_ns
         return Health(
             process=self.process,
             pid=self.pid,
@@ -67,10 +76,17 @@ class Meter:
             camera=camera,
         )
 
-    def _reason(self, t_now_ns: int, problem: str) -> str:
+    def _source_hz(self, seconds: float) -> float:
+        """By the pictures' own times: after a second without a grab, the pictures of two seconds are counted at once."""
+        if self.t_mid_ns is None or self.t_mid_reported_ns is None or self.t_mid_ns <= self.t_mid_reported_ns:
+            return self.pictures / seconds
+        return self.pictures / ((self.t_mid_ns - self.t_mid_reported_ns) * 1e-9)
+
+    def _reason(self, problem: str) -> str:
         reasons = []
-        if t_now_ns - self.t_picture_ns >= SILENT_NS:
-            reasons.append(f"camera '{self.camera}' has shown nothing for {(t_now_ns - self.t_picture_ns) * 1e-9:.0f} s")
+        silent_ns = self.t_in_vain_ns - self.t_picture_ns
+        if silent_ns >= SILENT_NS:
+            reasons.append(f"camera '{self.camera}' has shown nothing for {silent_ns * 1e-9:.0f} s")
         if self.damaged:
             reasons.append(f"camera '{self.camera}': {self.damaged} damaged pictures in the last second")
         if problem:

@@ -157,7 +157,9 @@ class EdgeLoop:
                 control = self._plan.at(self._clock.now_ns())
                 skipped_before = self._source.skipped
                 frame = self._source.grab(GRAB_TIMEOUT_S)
-                if frame is not None:
+                if frame is None:
+                    self._meter.in_vain(self._clock.now_ns())
+                else:
                     self._take(frame, self._source.skipped - skipped_before, control)
                 self._report(control)
         finally:
@@ -167,7 +169,7 @@ class EdgeLoop:
         """Count a picture, and infer it if it is its turn."""
         progress, meter = self._progress, self._meter
         now_ns = self._clock.now_ns()
-        meter.grabbed(now_ns, 1 + skipped)
+        meter.grabbed(now_ns, frame.t_mid_ns, 1 + skipped)
         if progress.t_grabbed_ns is not None:
             meter.skipped += missed_turns(frame.t_mid_ns, progress.t_grabbed_ns, skipped, control)
         progress.t_grabbed_ns = frame.t_mid_ns

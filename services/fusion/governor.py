@@ -7,11 +7,12 @@ the same rate, and places in the turn spread evenly, so that their inferences do
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from models.messages.control import PoseNetwork
 from models.messages.health import CameraHealth
+from services.fusion.inference_cost import InferenceCost
 
 
 @dataclass(frozen=True)
@@ -26,24 +27,27 @@ LADDER: Final = (
     Level(30.0, "thunder"),
     Level(15.0, "thunder"),
     Level(10.0, "thunder"),
+    Level(15.0, "lightning"),
     Level(10.0, "lightning"),
+    Level(7.5, "lightning"),
     Level(5.0, "lightning"),
 )
-"""Best first. A large network at 10 Hz beats a small one at 15: after smoothing, half the rate costs 13 % of accuracy, the
-small network's noise 60 % (measured on simulated throws; see docs/decisions/0003-governor.md)."""
+"""Best first, and cheaper with every rung. A large network at 10 Hz beats a small one at 15: after smoothing, half the rate costs
+13 % of accuracy, the small network's noise 60 % (measured on simulated throws; see docs/decisions/0003-governor.md)."""
 
 START: Final = 2
-_RELATIVE_COST: Final = {"thunder": 1.0, "lightning": 0.4}
-"""Whole inferences, decoding and cropping included."""
 _PATIENCE_S: Final = 5.0
 _FIRST_PENALTY_S: Final = 15.0
 _LONGEST_PENALTY_S: Final = 240.0
+_PROVEN_S: Final = 60.0
+"""A rung that failed before and now holds for so long is trusted again."""
 _SHORTFALL: Final = 0.85
 _SETTLING_S: Final = 2.5
 _STARTING_S: Final = 8.0
 """While everything loads, searches and detects at once, nothing is learnt about what comes after."""
-_COST_DRIFT: Final = 1.02
-"""What an inference costs is its least in calm seconds, forgotten by 2 % a second; what a busy machine adds is in its load."""
+_ROOM_TO_CLIMB: Final = 0.92
+_ROOM_TO_STAY: Final = 1.05
+"""Shares of the budget: near its limit the governor would swing if climbing and staying had the same one."""
 
 
 @dataclass(frozen=True)
@@ -63,15 +67,24 @@ class Load:
 
 @dataclass(frozen=True)
 class GovernorState:
-    """Where on the ladder, since when, and which rungs are not to be tried again before their time."""
+    """Where on the ladder, since when, what inferences cost, and which rung failed.
+
+    Attributes:
+        level: index into `LADDER`.
+        started_ns: CLOCK_MONOTONIC of the first step.
+        since_ns: of the last move.
+        failed: the rung that was last given up; it and those above are not tried again before `failed_until_ns`.
+        penalty_s: how long the next rung that fails is left alone.
+        cost: of an inference.
+    """
 
     level: int = START
     started_ns: int | None = None
     since_ns: int = 0
-    ceiling: int = 0
-    ceiling_until_ns: int = 0
+    failed: int | None = None
+    failed_until_ns: int = 0
     penalty_s: float = _FIRST_PENALTY_S
-    cost_ms: tuple[tuple[str, float], ...] = ()
+    cost: InferenceCost = field(default_factory=InferenceCost)
 
     @property
     def current(self) -> Level:
@@ -98,19 +111,7 @@ def step(state: GovernorState, load: Load, t_ns: int, max_rate_hz: float, cpu_ta
     started_s = (t_ns - (state.started_ns or 0)) * 1e-9
     if not load.cameras or settled_s < _SETTLING_S or started_s < _STARTING_S:
         return state
-    state = _learn_cost(state, load)
-    if _falls_behind(state, load):
-        return _step_down(state, t_ns)
-    if t_ns >= state.ceiling_until_ns:
-        state = replace(state, ceiling=0)
-    wanted = _best_affordable(state, load, max(best, state.ceiling), cpu_target)
-    if wanted > state.level:
-        return _move(state, state.level + 1, t_ns)
-    if wanted < state.level and settled_s >= _PATIENCE_S:
-        return _move(state, state.level - 1, t_ns)
-    if settled_s > _LONGEST_PENALTY_S:
-        state = replace(state, penalty_s=_FIRST_PENALTY_S)
-    return state
+    return _reconsider(replace(state, cost=state.cost.learn(load.cameras)), load, t_ns, best, cpu_target)
 
 
 def turn_offset_ns(position: int, cameras: int, rate_hz: float) -> int:
@@ -118,19 +119,35 @@ def turn_offset_ns(position: int, cameras: int, rate_hz: float) -> int:
     return round(position / cameras / rate_hz * 1e9)
 
 
+def _reconsider(state: GovernorState, load: Load, t_ns: int, best: int, cpu_target: float) -> GovernorState:
+    """Down, up or stay, once the last move has settled."""
+    settled_s = (t_ns - state.since_ns) * 1e-9
+    wanted = _best_affordable(state, load, max(best, _first_allowed(state, t_ns)), cpu_target)
+    if wanted > state.level or _falls_behind(state, load):
+        return _give_up(state, t_ns)
+    if wanted < state.level and settled_s >= _PATIENCE_S:
+        return _move(state, state.level - 1, t_ns)
+    if state.failed is not None and state.level <= state.failed and settled_s >= _PROVEN_S:
+        return replace(state, failed=None, penalty_s=_FIRST_PENALTY_S)
+    return state
+
+
 def predicted_cores(state: GovernorState, load: Load, level: Level) -> float:
     """CPU that would be in use on that rung: what is in use now, less today's inferences, plus that rung's."""
-    now = sum(camera.fresh_hz * _cost_ms(state, load, camera.network) for camera in load.cameras) / 1e3
-    then = len(load.cameras) * level.rate_hz * _cost_ms(state, load, level.network) / 1e3
+    now = sum(camera.fresh_hz * state.cost.of(camera.network) for camera in load.cameras) / 1e3
+    then = len(load.cameras) * level.rate_hz * state.cost.of(level.network) / 1e3
     return max(load.used_cores - now, 0.0) + then
+
+
+def _first_allowed(state: GovernorState, t_ns: int) -> int:
+    return 0 if state.failed is None or t_ns >= state.failed_until_ns else state.failed + 1
 
 
 def _best_affordable(state: GovernorState, load: Load, first: int, cpu_target: float) -> int:
     budget = load.granted_cores * cpu_target
     for index in range(first, len(LADDER)):
-        # To climb, a rung must fit with room to spare, or a load near the limit would make the governor swing.
-        margin = 0.92 if index < state.level else 1.05
-        if predicted_cores(state, load, LADDER[index]) <= budget * margin:
+        room = _ROOM_TO_CLIMB if index < state.level else _ROOM_TO_STAY
+        if predicted_cores(state, load, LADDER[index]) <= budget * room:
             return index
     return len(LADDER) - 1
 
@@ -144,37 +161,17 @@ def _falls_behind(state: GovernorState, load: Load) -> bool:
     return bool(judged) and 2 * len(slow) >= len(judged)
 
 
-def _step_down(state: GovernorState, t_ns: int) -> GovernorState:
+def _give_up(state: GovernorState, t_ns: int) -> GovernorState:
+    """One rung down, and this one is left alone for a while: longer each time, or it would be tried and given up for ever."""
     if state.level == len(LADDER) - 1:
         return state
-    lowered = _move(state, state.level + 1, t_ns)
     return replace(
-        lowered,
-        ceiling=lowered.level,
-        ceiling_until_ns=t_ns + round(state.penalty_s * 1e9),
+        _move(state, state.level + 1, t_ns),
+        failed=state.level,
+        failed_until_ns=t_ns + round(state.penalty_s * 1e9),
         penalty_s=min(2 * state.penalty_s, _LONGEST_PENALTY_S),
     )
 
 
 def _move(state: GovernorState, level: int, t_ns: int) -> GovernorState:
     return replace(state, level=level, since_ns=t_ns)
-
-
-def _learn_cost(state: GovernorState, load: Load) -> GovernorState:
-    costs = dict(state.cost_ms)
-    for network in {camera.network for camera in load.cameras}:
-        measured = [sum(camera.stage_ms.values()) for camera in load.cameras if camera.network == network and camera.fresh_hz > 0]
-        if measured:
-            mean = sum(measured) / len(measured)
-            costs[network] = min(mean, costs.get(network, mean) * _COST_DRIFT)
-    return replace(state, cost_ms=tuple(sorted(costs.items())))
-
-
-def _cost_ms(state: GovernorState, load: Load, network: str) -> float:
-    """What an inference costs; of a network that does not run, no more than what the running one lets expect."""
-    costs = dict(state.cost_ms)
-    running = {camera.network for camera in load.cameras} & costs.keys() & _RELATIVE_COST.keys()
-    expected = [costs[other] * _RELATIVE_COST[network] / _RELATIVE_COST[other] for other in running if network in _RELATIVE_COST]
-    if network in running:
-        return costs[network]
-    return min([*expected, *([costs[network]] if network in costs else [])], default=0.0)

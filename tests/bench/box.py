@@ -16,7 +16,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -73,7 +73,7 @@ class Heard:
     frames: dict[str, set[tuple[int, int]]] = field(default_factory=lambda: defaultdict(set))  # (epoch, frame) per camera
     stage_ms: dict[str, list[float]] = field(default_factory=lambda: defaultdict(list))
     edge_total_ms: list[float] = field(default_factory=list)
-    plans: set[str] = field(default_factory=set)
+    plans: list[str] = field(default_factory=list)  # of every camera, each second: "thunder_10hz"
     backlog_ms: list[float] = field(default_factory=list)
 
 
@@ -166,7 +166,7 @@ def watch_bus(site: Site, heard: Heard, stop: threading.Event) -> None:
             for stage, value in camera.stage_ms.items():
                 heard.stage_ms[stage].append(value)
             heard.edge_total_ms.append(sum(camera.stage_ms.values()))
-            heard.plans.add(f"{camera.target_hz:g} Hz {camera.network}")
+            heard.plans.append(f"{camera.network}_{camera.target_hz:g}hz")
             heard.backlog_ms.append(camera.backlog_ms)
     bus.close()
 
@@ -195,7 +195,6 @@ def measure(site_path: Path, data: Path, seconds: float, warm_s: float, cpus: se
             stop.set()
             for listener in listeners:
                 listener.join(10)
-    print(f"plans in force: {', '.join(sorted(heard.plans))}")
     return summary(heard, memory, elapsed, cpu)
 
 
@@ -228,6 +227,7 @@ def summary(heard: Heard, memory: Memory, elapsed_s: float, cpu_s: float) -> dic
         "cpu_cores": cpu_s / elapsed_s,
         **{f"edge_ms.{stage}": statistics.mean(values) for stage, values in sorted(heard.stage_ms.items())},
         "edge_ms.total": statistics.mean(heard.edge_total_ms) if heard.edge_total_ms else float("nan"),
+        **{f"plan_pct.{plan}": 100 * n / len(heard.plans) for plan, n in sorted(Counter(heard.plans).items())},
         "backlog_ms.max": max(heard.backlog_ms, default=float("nan")),
         **{f"rss_mb.{name}": rss for name, rss in sorted(memory.samples[-1][1].items())},
         "rss_growth_pct": memory.growth_pct(),

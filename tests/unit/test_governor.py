@@ -10,25 +10,33 @@ from services.fusion import governor
 from services.fusion.governor import LADDER, GovernorState, Load
 
 RUNNING = GovernorState(started_ns=0)
-COST_MS = {"thunder": 28.0, "lightning": 10.0}
+POSE_MS = {"thunder": 24.0, "lightning": 7.0}
+DECODE_MS = 4.0
 
 
 @dataclass
 class Box:
-    """A machine whose cameras get what the CPU allows: demand above capacity lowers every camera's rate alike."""
+    """A machine whose cameras get what the CPU allows: demand above capacity lowers every camera's rate alike.
+
+    `contention` is how much dearer everything becomes when all cores are busy.
+    """
 
     cores: float
-    base_cores: float = 0.4
+    base_cores: float = 0.25
     slowness: float = 1.0
     cameras: int = 4
+    contention: float = 0.0
+    used_cores: float = 0.0
 
     def second(self, state: GovernorState) -> Load:
         level = state.current
-        cost_ms = COST_MS[level.network] * self.slowness
-        wanted = self.cameras * level.rate_hz * cost_ms / 1e3
+        slowness = self.slowness * (1 + self.contention * self.used_cores / self.cores)
+        stages = {"pose": POSE_MS[level.network] * slowness, "decode": DECODE_MS * slowness}
+        wanted = self.cameras * level.rate_hz * sum(stages.values()) / 1e3
         share = min(1.0, max(self.cores - self.base_cores, 0.0) / wanted)
-        health = CameraHealth("cam", 30.0, level.rate_hz * share, level.rate_hz, 0, 5.0, level.network, {"pose": cost_ms})
-        return Load(self.cores, min(self.cores, self.base_cores + wanted * share), [health] * self.cameras)
+        self.used_cores = min(self.cores, self.base_cores + wanted * share)
+        health = CameraHealth("cam", 30.0, level.rate_hz * share, level.rate_hz, 0, 5.0, level.network, stages)
+        return Load(self.cores, self.used_cores, [health] * self.cameras)
 
 
 def run(box: Box, seconds: int, state: GovernorState | None = None, start_s: int = 0, **limits: float) -> list[GovernorState]:
@@ -45,7 +53,9 @@ def run(box: Box, seconds: int, state: GovernorState | None = None, start_s: int
         (8.0, 1.0, (30.0, "thunder")),
         (3.0, 1.0, (15.0, "thunder")),
         (2.0, 1.0, (10.0, "thunder")),
+        (2.0, 1.4, (15.0, "lightning")),
         (1.0, 1.0, (10.0, "lightning")),
+        (1.0, 1.6, (7.5, "lightning")),
         (2.0, 3.0, (10.0, "lightning")),
         (1.0, 3.0, (5.0, "lightning")),
     ],
@@ -54,6 +64,14 @@ def test_the_best_rate_that_fits_is_found_and_kept(cores: float, slowness: float
     states = run(Box(cores, slowness=slowness), 600)
     last = [(state.current.rate_hz, state.current.network) for state in states[-120:]]
     assert set(last) == {expected}
+
+
+@pytest.mark.parametrize("slowness", [0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.6, 2.0, 3.0])
+@pytest.mark.parametrize("cores", [1.0, 2.0, 4.0])
+def test_a_box_that_gets_slower_when_it_is_busy_does_not_swing(cores: float, slowness: float) -> None:
+    states = run(Box(cores, slowness=slowness, contention=0.5), 1800)
+    climbs = [b for a, b in itertools.pairwise(states[600:]) if b.level < a.level]
+    assert len(climbs) <= 1200 / 120
 
 
 def test_the_rush_of_the_start_neither_lowers_the_rate_nor_spoils_the_plan_for_later() -> None:
@@ -86,7 +104,7 @@ def test_a_rung_that_failed_is_tried_less_and_less_often() -> None:
             load = super().second(state)
             return Load(4.0, load.used_cores, load.cameras)
 
-    states = run(Boastful(1.7), 1200)
+    states = run(Boastful(1.6), 1200)
     climbs = [second for second, (a, b) in enumerate(itertools.pairwise(states)) if b.level < a.level]
     assert len(climbs) <= 12
     gaps = [b - a for a, b in itertools.pairwise(climbs)]

@@ -16,7 +16,7 @@ def meter() -> Meter:
 def test_rates_and_costs_are_of_the_last_second_and_totals_go_on() -> None:
     counted = meter()
     for k in range(30):
-        counted.grabbed(k * SECOND_NS // 30, 1)
+        counted.grabbed(k * SECOND_NS // 30, k * SECOND_NS // 30, 1)
     counted.inferred, counted.skipped, counted.spent_ns = 10, 3, {"pose": 250_000_000}
     counted.waited(4_000_000)
     counted.waited(9_000_000)
@@ -51,8 +51,26 @@ def test_rates_and_costs_are_of_the_last_second_and_totals_go_on() -> None:
 def test_what_is_wrong_is_said(silent_s: int, damaged: int, problem: str, reason: str) -> None:
     counted = meter()
     now_ns = 10 * SECOND_NS
-    counted.grabbed(now_ns - silent_s * SECOND_NS, 1)
+    counted.grabbed(now_ns - silent_s * SECOND_NS, now_ns - silent_s * SECOND_NS, 1)
+    counted.in_vain(now_ns)
     counted.damaged = damaged
     health = counted.report(now_ns, 10.0, "thunder", problem, USED)
     assert (health.state, health.reason) == ("degraded", reason)
     assert counted.report(now_ns, 10.0, "thunder", "", USED).state == ("degraded" if silent_s else "ok")
+
+
+def test_a_process_that_did_not_look_does_not_blame_the_camera() -> None:
+    counted = meter()
+    counted.grabbed(SECOND_NS, SECOND_NS, 1)
+    assert counted.report(6 * SECOND_NS, 10.0, "thunder", "", USED).reason == ""
+
+
+def test_pictures_that_were_caught_up_with_do_not_make_the_source_look_faster() -> None:
+    counted = meter()
+    counted.grabbed(SECOND_NS, SECOND_NS, 30)
+    counted.report(SECOND_NS, 10.0, "thunder", "", USED)
+    counted.report(2 * SECOND_NS, 10.0, "thunder", "", USED)
+    counted.grabbed(3 * SECOND_NS, 3 * SECOND_NS, 60)
+    camera = counted.report(3 * SECOND_NS, 10.0, "thunder", "", USED).camera
+    assert camera is not None
+    assert camera.source_hz == pytest.approx(30.0)
