@@ -15,7 +15,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks footage web kernels lock clean distclean bench-box bench-footage
+.PHONY: help run test check setup networks footage web kernels lock clean distclean bench-start bench-box bench-footage
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
@@ -75,6 +75,9 @@ $(DATA)/kernels/.ready: $(wildcard services/fusion/*.py) | $(VENV)/.ready
 	@echo "Compiling numerical kernels ..."
 	@$(PYTHON) -c "from services.fusion.warm_up import warm_up; warm_up()"
 	@touch $@
+
+bench-start: setup ## Seconds from the command to the figure in the browser, everything installed
+	$(PYTHON) -m tests.bench.start --site $(SITE) --data $(DATA)
 
 bench-box: setup ## Live rate, latency, CPU and memory of the whole box, 300 s and at half the CPU
 	$(PYTHON) -m tests.bench.box --site $(SITE) --data $(DATA)

@@ -8,7 +8,7 @@ import numpy as np
 
 from models.arrays import Bool, Float, UInt8
 from models.messages.observation import Crop
-from models.skeleton import coco
+from models.skeleton.trunk import lean_rad
 
 REDUCTIONS: Final = (4, 2, 1)
 BOX_MARGIN: Final = 1.25
@@ -16,8 +16,7 @@ BOX_MARGIN: Final = 1.25
 POSE_MARGIN: Final = 1.25
 """Side of the crop over the longer side of the keypoints' extent; their extent ends at the eyes, ankles and wrists."""
 _SHORT_TRUNK: Final = 0.08
-"""Trunk length over crop side under which its direction says nothing: the person bends towards the camera or away."""
-_LEFT_SHOULDER, _RIGHT_SHOULDER, _LEFT_HIP, _RIGHT_HIP = coco.TRUNK
+"""Trunk length over crop side under which its direction says nothing."""
 
 
 def crop_from_box(box_px: Float, angle_rad: float = 0.0) -> Crop:
@@ -34,25 +33,8 @@ def crop_from_pose(keypoints_px: Float, confident: Bool, previous: Crop) -> Crop
         confident: (17,) which of them to believe; at least two.
         previous: the crop that they were seen in; its angle stays if the trunk's direction cannot be told.
     """
-    angle = trunk_angle_rad(keypoints_px, confident, previous)
-    # Extent along the axes of the turned square, then its centre back in the picture.
-    upright = Crop(0.0, 0.0, 1.0, angle)
-    local = upright.to_crop(keypoints_px[confident])
-    low, high = local.min(axis=0), local.max(axis=0)
-    centre = upright.to_image((low + high) / 2)
-    return Crop(float(centre[0]), float(centre[1]), max(1.0, POSE_MARGIN * float((high - low).max())), angle)
-
-
-def trunk_angle_rad(keypoints_px: Float, confident: Bool, previous: Crop) -> float:
-    """Angle of the trunk, 0 upright and positive leaning to the right in the picture, or the previous crop's if unsure."""
-    if not confident[list(coco.TRUNK)].all():
-        return previous.angle_rad
-    shoulders = keypoints_px[[_LEFT_SHOULDER, _RIGHT_SHOULDER]].mean(axis=0)
-    hips = keypoints_px[[_LEFT_HIP, _RIGHT_HIP]].mean(axis=0)
-    x, y = (float(value) for value in shoulders - hips)
-    if math.hypot(x, y) < _SHORT_TRUNK * previous.side_px:
-        return previous.angle_rad
-    return math.atan2(x, -y)
+    lean = lean_rad(keypoints_px, confident, _SHORT_TRUNK * previous.side_px)
+    return Crop.around(keypoints_px[confident], previous.angle_rad if lean is None else lean, POSE_MARGIN)
 
 
 def blended(old: Crop, new: Crop, share: float) -> Crop:

@@ -29,6 +29,19 @@ class Crop(msgspec.Struct, frozen=True):
         if not all(math.isfinite(value) and abs(value) <= MAX_PX for value in values) or self.side_px <= 0:
             raise ValueError(f"a crop needs finite numbers within +-{MAX_PX:g} and a positive side, not {values}")
 
+    @classmethod
+    def around(cls, points_px: Float, angle_rad: float, margin: float, least_side_px: float = 1.0) -> "Crop":
+        """The square turned by `angle_rad` around points (n, 2), its side `margin` times their larger extent along its axes.
+
+        Raises:
+            ValueError: as for any crop, if the points lie too far out.
+        """
+        upright = cls(0.0, 0.0, 1.0, angle_rad)
+        local = upright.to_crop(points_px)
+        low, high = local.min(axis=0), local.max(axis=0)
+        centre = upright.to_image((low + high) / 2)
+        return cls(float(centre[0]), float(centre[1]), max(least_side_px, margin * float((high - low).max())), angle_rad)
+
     def to_image(self, points: Float) -> Float:
         """Crop coordinates (..., 2) in [0, 1] (x right, y down) to image pixels (..., 2)."""
         local = (np.asarray(points, np.float64) - 0.5) * self.side_px
