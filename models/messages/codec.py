@@ -12,14 +12,23 @@ import numpy as np
 
 from models.messages.control import ViewControl
 from models.messages.health import Health
+from models.messages.lesson import FusionLog, LessonRequest, SegmentRequest
 from models.messages.motion import Motion
 from models.messages.observation import Observation
 
 VERSION = 1
-Message = Observation | Motion | ViewControl | Health
+Message = Observation | Motion | ViewControl | Health | FusionLog | SegmentRequest | LessonRequest
 MessageT = TypeVar("MessageT", bound=Message)
 
-_TYPES: dict[int, type] = {1: Observation, 2: Motion, 3: ViewControl, 4: Health}
+_TYPES: dict[int, type] = {
+    1: Observation,
+    2: Motion,
+    3: ViewControl,
+    4: Health,
+    5: FusionLog,
+    6: SegmentRequest,
+    7: LessonRequest,
+}
 _CODES = {kind: code for code, kind in _TYPES.items()}
 _ARRAY = 1
 _DTYPES: dict[int, np.dtype[Any]] = {0: np.dtype("<f4"), 1: np.dtype("<f8"), 2: np.dtype("u1"), 3: np.dtype("<u4")}

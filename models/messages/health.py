@@ -48,6 +48,45 @@ class FusionHealth(msgspec.Struct, frozen=True):
     pupil: Literal["searching", "found"]
 
 
+class RecorderHealth(msgspec.Struct, frozen=True):
+    """What the recorder does.
+
+    Attributes:
+        lesson: the running lesson's name, by which `kinebox replay` finds it; empty while nothing is recorded.
+        title: what people call it.
+        recorded_s: length of what is safe on disk.
+        size_mb: of the file.
+        gaps: interruptions since the lesson began.
+    """
+
+    lesson: str
+    title: str
+    recorded_s: float
+    size_mb: float
+    gaps: int
+
+
+class MachineHealth(msgspec.Struct, frozen=True):
+    """The machine under the box (said by the supervisor).
+
+    Attributes:
+        used_cores, granted_cores: CPU in use, by whomever, and what the box may use.
+        memory_free_mb: memory that can be had without swapping.
+        disk_free_mb: room where lessons and logs are kept.
+        temperature_c: of the processor; None where the machine does not say.
+        wall_minus_monotonic_ns: CLOCK_REALTIME less CLOCK_MONOTONIC.
+        clock_step_ms: how far the wall clock was set, forwards positive, in the last minute; 0 if it was not.
+    """
+
+    used_cores: float
+    granted_cores: float
+    memory_free_mb: float
+    disk_free_mb: float
+    temperature_c: float | None
+    wall_minus_monotonic_ns: int
+    clock_step_ms: float
+
+
 class Health(msgspec.Struct, frozen=True):
     """State of one process, published about once a second on its own topic.
 
@@ -67,3 +106,5 @@ class Health(msgspec.Struct, frozen=True):
     rss_mb: float
     camera: CameraHealth | None = None
     fusion: FusionHealth | None = None
+    recorder: RecorderHealth | None = None
+    machine: MachineHealth | None = None

@@ -18,6 +18,21 @@ def motion(kind: str) -> str:
     return f"{ROOM}/motion/{kind}"
 
 
+def fusion_log() -> str:
+    """fusion -> recorder"""
+    return f"{ROOM}/fusion/log"
+
+
+def segment_request() -> str:
+    """recorder -> fusion"""
+    return f"{ROOM}/fusion/segment"
+
+
+def lesson_request() -> str:
+    """command line, tablet -> recorder"""
+    return f"{ROOM}/lesson/request"
+
+
 def health(process: str) -> str:
     """every process -> everyone"""
     return f"{ROOM}/health/{process}"

@@ -8,7 +8,8 @@ import pytest
 
 from models.messages import codec
 from models.messages.control import CropPrediction, ViewControl
-from models.messages.health import CameraHealth, FusionHealth, Health
+from models.messages.health import CameraHealth, FusionHealth, Health, MachineHealth, RecorderHealth
+from models.messages.lesson import Entry, FusionLog, LessonRequest, SegmentRequest
 from models.messages.motion import CameraUse, Motion
 from models.messages.observation import Crop, Observation, Person
 
@@ -48,6 +49,14 @@ def examples() -> dict[str, codec.Message]:
             camera=CameraHealth("cam01", 30.0, 9.9, 10.0, 4, 12.5, "thunder", {"decode": 4.5, "pose": 24.0}),
             fusion=FusionHealth(30.0, 1.25, 0.8, 3, {"cam02": 7}, "found"),
         ),
+        "health_recorder": Health(
+            "recorder", 4712, 10**15, "ok", "", 0.01, 60.5,
+            recorder=RecorderHealth("2026-11-22-7b", "7b", 61.5, 2.25, 1),
+            machine=MachineHealth(1.5, 2.0, 900.0, 12_000.0, None, 10**18, -250.0),
+        ),
+        "fusion_log": FusionLog(10**15, 3, (Entry("observation", 10**15 + 7, b"\x01\x01"), Entry("tick", 10**15 + 8, b""))),
+        "segment_request": SegmentRequest(10**15),
+        "lesson_request": LessonRequest("start", "7b, throwing"),
     }  # fmt: skip
 
 

@@ -1,0 +1,61 @@
+"""The record of a lesson: what fusion consumed, in its order, and who asks for it.
+
+A lesson replays only from a state that is known, and that is fusion's first one. So a recorder that begins, or that has missed
+something, asks fusion to begin anew; from then on fusion publishes everything that it takes in, in its order, as one *segment*.
+"""
+
+from typing import Literal
+
+import msgspec
+
+MAX_TITLE = 80
+
+
+class Entry(msgspec.Struct, frozen=True, array_like=True):
+    """One thing that fusion took in or gave out.
+
+    Attributes:
+        kind: "observation" and "tick" are fusion's input; "motion" (smooth) is its output; "health" is what a process said.
+        t_ns: CLOCK_MONOTONIC at which fusion took it in or gave it out; never decreases within a segment.
+        payload: the message as it was on the bus; empty for a tick, whose time is `t_ns`.
+    """
+
+    kind: Literal["observation", "tick", "motion", "health"]
+    t_ns: int
+    payload: bytes
+
+
+class FusionLog(msgspec.Struct, frozen=True):
+    """A part of a segment (fusion -> recorder), about twice a second.
+
+    Attributes:
+        segment_ns: CLOCK_MONOTONIC at which fusion's state began; names the segment.
+        sequence: counts the parts of the segment from 0; a number that is missing is a gap.
+        entries: in fusion's order.
+    """
+
+    segment_ns: int
+    sequence: int
+    entries: tuple[Entry, ...]
+
+
+class SegmentRequest(msgspec.Struct, frozen=True):
+    """Begin with a new state, and log from there (recorder -> fusion). `t_ns`: CLOCK_MONOTONIC when it was asked."""
+
+    t_ns: int
+
+
+class LessonRequest(msgspec.Struct, frozen=True):
+    """Begin or end a lesson (command line, tablet -> recorder).
+
+    Attributes:
+        action: "start" while one is being recorded changes nothing.
+        title: what people call it; at most `MAX_TITLE` characters; without meaning for "stop".
+    """
+
+    action: Literal["start", "stop"]
+    title: str = ""
+
+    def __post_init__(self) -> None:
+        if len(self.title) > MAX_TITLE:
+            raise ValueError(f"a title has at most {MAX_TITLE} characters")
