@@ -82,7 +82,7 @@ class FusionState:
     outvoted: set[str] = field(default_factory=set)
 
 
-def initial_state(rig: Rig, config: FusionConfig) -> FusionState:  # noqa: ARG001 - the signature of every step function's start
+def initial_state(rig: Rig) -> FusionState:
     """The state before the first event."""
     return FusionState(Views.of(rig))
 

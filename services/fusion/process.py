@@ -63,7 +63,7 @@ class FusionLoop:
         self._bus = context.bus
         self._cpu = cpu
         self._config = PRESETS[context.site.fusion.preset]
-        self._state = initial_state(context.rig, self._config)
+        self._state = initial_state(context.rig)
         self._governor = GovernorState()
         self._names = context.rig.names
         self._observations = {topics.observation(name) for name in self._names}

@@ -31,7 +31,7 @@ def warm_up() -> None:
     config = PRESETS["default"]
     rig = Rig(tuple(_camera(name, x, y) for name, x, y in (("a", 5.0, 0.0), ("b", 0.0, 5.0), ("c", -4.0, 3.0))))
     joints = _standing()
-    state = initial_state(rig, config)
+    state = initial_state(rig)
     sequence = 0
     for tick in range(1, 61):
         t_ns = tick * _PERIOD_NS

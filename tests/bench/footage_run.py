@@ -73,7 +73,7 @@ def look(
     networks = Networks(pose, lambda: detector)
     states = [EdgeState() for _ in videos]
     inferred: list[int | None] = [None] * len(videos)
-    fusion = initial_state(rig, CONFIG)
+    fusion = initial_state(rig)
     searching: dict[str, bool] = {}
     predictions: dict[str, CropPrediction | None] = dict.fromkeys(rig.names)
     events: list[Event] = []
@@ -109,7 +109,7 @@ def look(
 
 def reconstruct(rig: Rig, events: Sequence[Event], frames: int, config: FusionConfig = CONFIG) -> Reconstruction:
     """Fuse recorded events."""
-    state = initial_state(rig, config)
+    state = initial_state(rig)
     joints = {kind: np.full((frames, coco.COUNT, 3), np.nan) for kind in ("live", "smooth")}
     states = {kind: np.zeros((frames, coco.COUNT), np.uint8) for kind in ("live", "smooth")}
     views = np.zeros((frames, coco.COUNT), np.uint32)

@@ -25,7 +25,7 @@ def seen_by(index: int, t_ns: int, epoch: int = 0, sigma_px: float = 2.0) -> Obs
 @pytest.mark.parametrize("seed", range(8))
 def test_pictures_of_scattered_times_never_break_the_window(seed: int) -> None:
     random = np.random.default_rng(seed)
-    state = initial_state(RIG, CONFIG)
+    state = initial_state(RIG)
     for tick in range(90):
         t_ns = T0_NS + round(tick * 1e9 / 30)
         for index in range(4):
@@ -42,7 +42,7 @@ def test_pictures_of_scattered_times_never_break_the_window(seed: int) -> None:
 
 @pytest.mark.parametrize("sigma_px", [1e-30, 1e-3, 1e6])
 def test_extreme_sigmas_are_survived(sigma_px: float) -> None:
-    state = initial_state(RIG, CONFIG)
+    state = initial_state(RIG)
     for tick in range(40):
         t_ns = T0_NS + round(tick * 1e9 / 30)
         for index in range(4):
@@ -52,7 +52,7 @@ def test_extreme_sigmas_are_survived(sigma_px: float) -> None:
 
 
 def test_one_cameras_wrong_epoch_does_not_blind_the_room_for_good() -> None:
-    state = initial_state(RIG, CONFIG)
+    state = initial_state(RIG)
     seen = []
     for tick in range(150):
         t_ns = T0_NS + round(tick * 1e9 / 30)

@@ -28,7 +28,7 @@ class Played:
 
 def play(rig: Rig, events: Iterable[Observation | Tick], config: FusionConfig = DEFAULT) -> Played:
     """Run all events."""
-    state, played = initial_state(rig, config), Played()
+    state, played = initial_state(rig), Played()
     for event in events:
         state, output = step(state, event, config)
         played.outputs.append(output)

@@ -168,7 +168,7 @@ def test_vanishing_sigmas_full_scores_and_empty_pictures_do_no_harm() -> None:
 
 def test_predicted_crops_hold_the_pupil() -> None:
     gym = replace(GYM, seconds=3.0, rig=ring_rig(4, distorted=True))
-    state = initial_state(gym.rig, DEFAULT)
+    state = initial_state(gym.rig)
     assert set(predict_views(state, T0_NS).values()) == {None}
     inside = []
     for event in gym.events():
