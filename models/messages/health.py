@@ -66,6 +66,20 @@ class RecorderHealth(msgspec.Struct, frozen=True):
     gaps: int
 
 
+class ReplayHealth(msgspec.Struct, frozen=True):
+    """How far the replay process is in its lesson.
+
+    Attributes:
+        position_s: how far into the lesson the figure is.
+        length_s: of the lesson.
+        speed: seconds of the lesson a second.
+    """
+
+    position_s: float
+    length_s: float
+    speed: float
+
+
 class MachineHealth(msgspec.Struct, frozen=True):
     """The machine under the box (said by the supervisor).
 
@@ -76,6 +90,7 @@ class MachineHealth(msgspec.Struct, frozen=True):
         temperature_c: of the processor; None where the machine does not say.
         wall_minus_monotonic_ns: CLOCK_REALTIME less CLOCK_MONOTONIC.
         clock_step_ms: how far the wall clock was set, forwards positive, in the last minute; 0 if it was not.
+        throttled: the processor was slowed down, for its heat or for want of power, in the last minute.
     """
 
     used_cores: float
@@ -85,6 +100,37 @@ class MachineHealth(msgspec.Struct, frozen=True):
     temperature_c: float | None
     wall_minus_monotonic_ns: int
     clock_step_ms: float
+    throttled: bool = False
+
+
+class Restarts(msgspec.Struct, frozen=True):
+    """How often one process had to be started again since the box was started.
+
+    Attributes:
+        last_ns: CLOCK_MONOTONIC of the last time.
+        reason: what became of it then, as a verb ("was ended by SIGKILL", "hung").
+        given_up: why it is not started any more; empty if it is.
+    """
+
+    process: str
+    count: int
+    last_ns: int
+    reason: str
+    given_up: str
+
+
+class SupervisorHealth(msgspec.Struct, frozen=True):
+    """What the supervisor holds together.
+
+    Attributes:
+        version: of the KineBox that runs.
+        started_ns: CLOCK_MONOTONIC of the box's start.
+        restarts: one entry for every process that ended since; empty if none did.
+    """
+
+    version: str
+    started_ns: int
+    restarts: tuple[Restarts, ...]
 
 
 class Health(msgspec.Struct, frozen=True):
@@ -108,3 +154,5 @@ class Health(msgspec.Struct, frozen=True):
     fusion: FusionHealth | None = None
     recorder: RecorderHealth | None = None
     machine: MachineHealth | None = None
+    replay: ReplayHealth | None = None
+    supervisor: SupervisorHealth | None = None

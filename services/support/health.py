@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 from models.messages import codec, topics
-from models.messages.health import FusionHealth, Health
+from models.messages.health import FusionHealth, Health, MachineHealth, RecorderHealth, ReplayHealth, SupervisorHealth
 from models.process import Bus, Resources
 
 PERIOD_S = 1.0
@@ -60,6 +60,10 @@ class HealthReporter:
         reason: str = "",
         *,
         fusion: FusionHealth | None = None,
+        recorder: RecorderHealth | None = None,
+        machine: MachineHealth | None = None,
+        replay: ReplayHealth | None = None,
+        supervisor: SupervisorHealth | None = None,
     ) -> Health:
         """Publish how this process is, and return what was published."""
         now_ns = self._clock_ns()
@@ -74,6 +78,10 @@ class HealthReporter:
             cpu_cores=used.cpu_cores,
             rss_mb=used.rss_mb,
             fusion=fusion,
+            recorder=recorder,
+            machine=machine,
+            replay=replay,
+            supervisor=supervisor,
         )
         self._bus.publish(topics.health(health.process), codec.encode(health))
         return health

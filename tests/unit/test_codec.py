@@ -8,7 +8,16 @@ import pytest
 
 from models.messages import codec
 from models.messages.control import CropPrediction, ViewControl
-from models.messages.health import CameraHealth, FusionHealth, Health, MachineHealth, RecorderHealth
+from models.messages.health import (
+    CameraHealth,
+    FusionHealth,
+    Health,
+    MachineHealth,
+    RecorderHealth,
+    ReplayHealth,
+    Restarts,
+    SupervisorHealth,
+)
 from models.messages.lesson import Entry, FusionLog, LessonRequest, SegmentRequest
 from models.messages.motion import CameraUse, Motion
 from models.messages.observation import Crop, Observation, Person
@@ -53,6 +62,15 @@ def examples() -> dict[str, codec.Message]:
             "recorder", 4712, 10**15, "ok", "", 0.01, 60.5,
             recorder=RecorderHealth("2026-11-22-7b", "7b", 61.5, 2.25, 1),
             machine=MachineHealth(1.5, 2.0, 900.0, 12_000.0, None, 10**18, -250.0),
+        ),
+        "health_replay": Health(
+            "replay", 4713, 10**15, "ok", "", 0.01, 60.5,
+            replay=ReplayHealth(61.5, 2700.0, 0.5),
+        ),
+        "health_supervisor": Health(
+            "supervisor", 4714, 10**15, "failed", "edge-cam01 is given up", 0.01, 20.5,
+            machine=MachineHealth(1.5, 2.0, 900.0, 12_000.0, 61.5, 10**18, 0.0, throttled=True),
+            supervisor=SupervisorHealth("0.1.0", 10**14, (Restarts("edge-cam01", 5, 10**15, "hung", "ended 6 times"),)),
         ),
         "fusion_log": FusionLog(10**15, 3, (Entry("observation", 10**15 + 7, b"\x01\x01"), Entry("tick", 10**15 + 8, b""))),
         "segment_request": SegmentRequest(10**15),
