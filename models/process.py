@@ -17,6 +17,10 @@ ROUTER = "fusion"
 """The process that is the bus's router, for which all others wait."""
 EDGE = "edge"
 """The process of one camera; the only one of which there are several."""
+RECORDER = "recorder"
+"""The process that writes lessons."""
+REPLAY = "replay"
+"""The process that plays a lesson; then it is the router, in fusion's place."""
 
 Check = Callable[[Site, Rig, Path], None]
 """What a part wants checked before anything is started, with the data folder; it raises `UserError` if the part could not work."""
@@ -75,6 +79,25 @@ class Resources(NamedTuple):
 
 
 @dataclass(frozen=True)
+class Playback:
+    """A lesson that is played in the place of a room.
+
+    Attributes:
+        file: the lesson's.
+        title: what people call the lesson; may be empty.
+        began_wall_ns: CLOCK_REALTIME at which it was begun.
+        speed: seconds of the lesson a second.
+        loop: begin again at its end.
+    """
+
+    file: Path
+    title: str
+    began_wall_ns: int
+    speed: float
+    loop: bool
+
+
+@dataclass(frozen=True)
 class ProcessContext:
     """Everything a process of the box needs from outside.
 
@@ -88,6 +111,7 @@ class ProcessContext:
         bus: open session.
         stop: set when the process shall end.
         resources: measures this process; every process reports the result in its health once a second.
+        playback: what is played in the place of a room; None in a room.
     """
 
     name: str
@@ -99,3 +123,4 @@ class ProcessContext:
     bus: Bus
     stop: threading.Event
     resources: Callable[[], Resources]
+    playback: Playback | None = None

@@ -63,6 +63,24 @@ class Latency(_Model):
     p95_ms: float
 
 
+class Recording(_Model):
+    """A lesson that is being recorded."""
+
+    title: str
+    recorded_s: Annotated[float | None, Field(description="length of what is safe on disk")]
+    gaps: Annotated[int, Field(description="interruptions since the lesson began")]
+
+
+class Replay(_Model):
+    """A lesson that is being played; then nothing on the page is live."""
+
+    title: str
+    began_ms: Annotated[int, Field(description="when the lesson was begun, milliseconds since 1970 in UTC")]
+    speed: Annotated[float, Field(description="seconds of the lesson a second")]
+    position_s: Annotated[float | None, Field(description="how far into the lesson the figure is")]
+    length_s: float | None
+
+
 class Status(_Model):
     """The room as a whole, about twice a second."""
 
@@ -76,6 +94,8 @@ class Status(_Model):
     latency: Latency | None
     pupil: Literal["unknown", "searching", "found"]
     cpu_load: Annotated[float | None, Field(description="share of the granted CPU that is in use, 0 to 1")]
+    recording: Recording | None
+    replay: Replay | None
     cameras: list[CameraStatus]
     processes: list[ProcessStatus]
     clients: int

@@ -43,7 +43,8 @@ def main(context: ProcessContext) -> None:
     listener = listen(context.site.tablet)
     site = context.site
     cameras = tuple(camera.name for camera in site.cameras)
-    server = TabletServer(RoomState(site.name, cameras, site.fusion.live_hz, time.monotonic_ns()), time.monotonic_ns)
+    room = RoomState(site.name, cameras, site.fusion.live_hz, time.monotonic_ns(), context.playback)
+    server = TabletServer(room, time.monotonic_ns)
     try:
         asyncio.run(_serve(context, server, listener))
     finally:

@@ -7,11 +7,11 @@ import math
 from collections import deque
 from typing import Literal
 
-from models.messages.health import FusionHealth, Health
+from models.messages.health import Health
 from models.messages.motion import JointState, Motion
-from models.process import EDGE, ROUTER, process_name
+from models.process import EDGE, RECORDER, REPLAY, ROUTER, Playback, process_name
 from services.tablet.camera_state import SILENT_AFTER_NS, HeardHealth, Presence, camera_status, known
-from services.tablet.messages import CameraStatus, Latency, ProcessStatus, Status
+from services.tablet.messages import CameraStatus, Latency, ProcessStatus, Recording, Replay, Status
 
 WINDOW_NS = 3_000_000_000
 """Rates and latencies are those of the last so many nanoseconds."""
@@ -59,14 +59,18 @@ class RoomState:
         cameras: names of the site's cameras, in its order.
         wished_hz: motions a second that the site file asks for.
         started_ns: CLOCK_MONOTONIC at the server's start.
+        playback: what is played in the place of a room; None in a room.
     """
 
-    def __init__(self, room: str, cameras: tuple[str, ...], wished_hz: float, started_ns: int) -> None:
+    def __init__(
+        self, room: str, cameras: tuple[str, ...], wished_hz: float, started_ns: int, playback: Playback | None = None
+    ) -> None:
         self._room = room
         self._cameras = cameras
         self._wished_hz = wished_hz
         self._started_ns = started_ns
-        self._processes = {ROUTER, "tablet", "supervisor", *(process_name(EDGE, camera) for camera in cameras)}
+        self._playback = playback
+        self._processes = {ROUTER, RECORDER, REPLAY, "tablet", "supervisor", *(process_name(EDGE, name) for name in cameras)}
         self._health: dict[str, HeardHealth] = {}
         self._presence: dict[str, Presence] = {}
         self._motion: Motion | None = None
@@ -98,7 +102,8 @@ class RoomState:
 
     def status(self, now_ns: int, clients: int) -> Status:
         """The room as it is at `now_ns` (CLOCK_MONOTONIC)."""
-        fusion, motion, used = self._fusion(now_ns), self._motion, self._used(now_ns)
+        fusion_health, motion, used = self._said(ROUTER, now_ns), self._motion, self._used(now_ns)
+        fusion = fusion_health.fusion if fusion_health else None
         return Status(
             room=self._room,
             box_time_us=now_ns // 1000,
@@ -109,6 +114,8 @@ class RoomState:
             latency=self._meter.latency(now_ns),
             pupil=fusion.pupil if fusion else "unknown",
             cpu_load=known(fusion.cpu_load) if fusion else None,
+            recording=self._recording(now_ns),
+            replay=self._replay(now_ns),
             cameras=[self._camera(name, name in used, now_ns) for name in self._cameras],
             processes=[self._process(heard, now_ns) for _, heard in sorted(self._health.items())],
             clients=clients,
@@ -131,11 +138,33 @@ class RoomState:
             return frozenset()
         return frozenset(use.camera for use in motion.cameras if use.used)
 
-    def _fusion(self, now_ns: int) -> FusionHealth | None:
-        heard = self._health.get(ROUTER)
-        if heard is None or now_ns - heard.arrived_ns > SILENT_AFTER_NS or self._gone(ROUTER):
+    def _said(self, process: str, now_ns: int) -> Health | None:
+        """What a process says of itself; None if it is silent or gone."""
+        heard = self._health.get(process)
+        if heard is None or now_ns - heard.arrived_ns > SILENT_AFTER_NS or self._gone(process):
             return None
-        return heard.health.fusion
+        return heard.health
+
+    def _recording(self, now_ns: int) -> Recording | None:
+        health = self._said(RECORDER, now_ns)
+        recorder = health.recorder if health else None
+        if recorder is None or not recorder.lesson:
+            return None
+        return Recording(title=recorder.title, recorded_s=known(recorder.recorded_s), gaps=recorder.gaps)
+
+    def _replay(self, now_ns: int) -> Replay | None:
+        # From the start, and not only once the replay process is heard of: what is played must never look live.
+        if self._playback is None:
+            return None
+        health = self._said(REPLAY, now_ns)
+        heard = health.replay if health else None
+        return Replay(
+            title=self._playback.title,
+            began_ms=self._playback.began_wall_ns // 1_000_000,
+            speed=self._playback.speed,
+            position_s=known(heard.position_s) if heard else None,
+            length_s=known(heard.length_s) if heard else None,
+        )
 
     def _process(self, heard: HeardHealth, now_ns: int) -> ProcessStatus:
         health, age_ns = heard.health, now_ns - heard.arrived_ns

@@ -1,11 +1,14 @@
 """What the page is told of the room, for every way in which a part of it can be missing."""
 
+from pathlib import Path
+
 import msgspec
 import numpy as np
 import pytest
 
-from models.messages.health import CameraHealth, FusionHealth, Health
+from models.messages.health import CameraHealth, FusionHealth, Health, RecorderHealth, ReplayHealth
 from models.messages.motion import CameraUse, JointState, Motion
+from models.process import Playback
 from models.skeleton import coco
 from services.tablet.messages import CameraStatus
 from services.tablet.room_state import RoomState
@@ -196,3 +199,36 @@ def test_a_new_epoch_is_passed_on() -> None:
     state = room()
     state.receive_motion(motion(T0, epoch=4), T0)
     assert state.status(T0, 0).epoch == 4
+
+
+def recorder(lesson: str, recorded_s: float = 61.0) -> Health:
+    said = RecorderHealth(lesson, "7b", recorded_s, 2.0, 0)
+    return Health("recorder", 5, T0, "ok", "", 0.0, 50.0, recorder=said)
+
+
+def test_recording_is_shown_while_the_recorder_says_so_and_no_longer() -> None:
+    state = room()
+    assert state.status(T0, 0).recording is None
+    state.receive_health(recorder(""), T0)
+    assert state.status(T0, 0).recording is None
+    state.receive_health(recorder("2026-11-22-7b"), T0)
+    recording = state.status(T0, 0).recording
+    assert recording is not None
+    assert (recording.title, recording.recorded_s) == ("7b", 61.0)
+    assert state.status(T0 + 4 * S, 0).recording is None, "a recorder that is silent may be dead"
+    state.receive_health(recorder("2026-11-22-7b"), T0 + 5 * S)
+    state.set_alive("recorder", False, T0 + 5 * S)
+    assert state.status(T0 + 5 * S, 0).recording is None
+
+
+def test_what_is_played_never_looks_live_even_before_the_replay_is_heard() -> None:
+    lesson = Playback(Path("lesson.mcap"), "7b", began_wall_ns=1_764_000_000 * S, speed=0.5, loop=True)
+    state = RoomState("gym", ("a", "b"), wished_hz=30.0, started_ns=T0, playback=lesson)
+    shown = state.status(T0, 0).replay
+    assert shown is not None
+    assert (shown.title, shown.began_ms, shown.position_s) == ("7b", 1_764_000_000_000, None)
+    state.receive_health(Health("replay", 5, T0, "ok", "", 0.0, 50.0, replay=ReplayHealth(3.0, 60.0, 0.5)), T0)
+    shown = state.status(T0, 0).replay
+    assert shown is not None
+    assert (shown.position_s, shown.length_s) == (3.0, 60.0)
+    assert room().status(T0, 0).replay is None

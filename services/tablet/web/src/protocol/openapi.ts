@@ -106,6 +106,49 @@ export interface components {
             rss_mb: number | null;
         };
         /**
+         * Recording
+         * @description A lesson that is being recorded.
+         */
+        Recording: {
+            /** Title */
+            title: string;
+            /**
+             * Recorded S
+             * @description length of what is safe on disk
+             */
+            recorded_s: number | null;
+            /**
+             * Gaps
+             * @description interruptions since the lesson began
+             */
+            gaps: number;
+        };
+        /**
+         * Replay
+         * @description A lesson that is being played; then nothing on the page is live.
+         */
+        Replay: {
+            /** Title */
+            title: string;
+            /**
+             * Began Ms
+             * @description when the lesson was begun, milliseconds since 1970 in UTC
+             */
+            began_ms: number;
+            /**
+             * Speed
+             * @description seconds of the lesson a second
+             */
+            speed: number;
+            /**
+             * Position S
+             * @description how far into the lesson the figure is
+             */
+            position_s: number | null;
+            /** Length S */
+            length_s: number | null;
+        };
+        /**
          * Status
          * @description The room as a whole, about twice a second.
          */
@@ -154,6 +197,8 @@ export interface components {
              * @description share of the granted CPU that is in use, 0 to 1
              */
             cpu_load: number | null;
+            recording: components["schemas"]["Recording"] | null;
+            replay: components["schemas"]["Replay"] | null;
             /** Cameras */
             cameras: components["schemas"]["CameraStatus"][];
             /** Processes */
