@@ -17,14 +17,6 @@ from tests.integration.waiting import free_port, until
 pytestmark = pytest.mark.slow
 
 
-# Whatever runs the tests, nohup for one, may have left SIGHUP ignored, and children inherit that.
-AS_IF_FROM_A_TERMINAL = """
-import runpy, signal
-signal.signal(signal.SIGHUP, signal.SIG_DFL)
-runpy.run_module("services.cli.main", run_name="__main__", alter_sys=True)
-"""
-
-
 @pytest.fixture
 def site(tmp_path: Path) -> Path:
     return write_site(tmp_path, free_port(), free_port())
@@ -39,7 +31,7 @@ def kinebox(*words: str) -> "subprocess.CompletedProcess[str]":
 def running(site: Path, *words: str) -> "Iterator[subprocess.Popen[str]]":
     data = site.parent / "data"
     data.mkdir(exist_ok=True)
-    command = [sys.executable, "-c", AS_IF_FROM_A_TERMINAL, "process", *words, "--site", str(site), "--data", str(data)]
+    command = [sys.executable, "-m", "services.cli.main", "process", *words, "--site", str(site), "--data", str(data)]
     pipe = subprocess.PIPE
     with subprocess.Popen(command, env=fake_parts(site.parent), stdout=pipe, stderr=pipe, text=True, cwd=ROOT) as process:
         try:

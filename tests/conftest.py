@@ -1,0 +1,8 @@
+"""What holds for all tests."""
+
+import signal
+
+# Whatever runs the tests (nohup, a shell's background job) may have left these ignored, which children inherit and keep to.
+for _number in (signal.SIGINT, signal.SIGHUP):
+    if signal.getsignal(_number) is signal.SIG_IGN:
+        signal.signal(_number, signal.default_int_handler if _number is signal.SIGINT else signal.SIG_DFL)
