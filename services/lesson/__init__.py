@@ -1,0 +1,1 @@
+"""Lessons: recorded to files that survive a crash, listed, read back."""

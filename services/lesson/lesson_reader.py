@@ -1,0 +1,191 @@
+"""Reading a lesson back: its header, then the parts of fusion's log in their order, every byte checked.
+
+with open_lesson(path) as lesson:
+    for part in lesson.parts():
+        if part.begins_segment: state = initial_state(rig)
+        for entry in part.entries: ...
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import BinaryIO
+
+import msgspec
+from mcap.opcode import Opcode
+from mcap.records import Header, Message, Metadata
+
+from models.errors import UserError
+from models.messages.lesson import Entry
+from services.lesson import lesson_header
+from services.lesson.layout import MARK, PART_SUFFIX, PROFILE, Mark, entry
+from services.lesson.lesson_header import HeaderError, LessonHeader, NewerFormatError
+from services.lesson.mcap_records import DamageError, Place, messages, parse, walk
+
+_RECOVER = (
+    f"give it a name that ends with '{PART_SUFFIX}', in the folder of lessons, and start KineBox: all before that is recovered"
+)
+
+
+@dataclass(frozen=True)
+class LessonPart:
+    """What one `FusionLog` held.
+
+    Attributes:
+        segment_ns, sequence: as fusion numbered the part.
+        begins_segment: fusion began with a new state before the first entry.
+        gap: why something is missing between the part before and this one; empty if nothing is.
+        entries: in fusion's order; their times are fusion's own.
+    """
+
+    segment_ns: int
+    sequence: int
+    begins_segment: bool
+    gap: str
+    entries: tuple[Entry, ...]
+
+
+@dataclass(frozen=True)
+class LessonSummary:
+    """A whole lesson in figures.
+
+    Attributes:
+        seconds: from the first entry to the last.
+        parts, segments, gaps: how many; the first segment begins without a gap.
+        entries: how many, by kind.
+        end_ns: CLOCK_MONOTONIC of the last entry; the lesson's start if it has none.
+    """
+
+    seconds: float
+    parts: int
+    segments: int
+    gaps: int
+    entries: dict[str, int]
+    end_ns: int
+
+
+class Lesson:
+    """An open lesson file. `parts` and `summary` each read it from the beginning."""
+
+    def __init__(self, path: Path, file: BinaryIO) -> None:
+        self.path = path
+        self._file = file
+        self.header = read_header(path, file)
+
+    def __enter__(self) -> "Lesson":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self._file.close()
+
+    def parts(self) -> Iterator[LessonPart]:
+        """Every part in fusion's order, read as it is asked for.
+
+        Raises:
+            UserError: the file is damaged from here on.
+        """
+        self._file.seek(0)
+        decoder = PartDecoder()
+        try:
+            for place in walk(self._file):
+                if place.opcode == Opcode.CHUNK:
+                    yield decoder.decode(place)
+        except DamageError as error:
+            raise UserError(f"lesson {self.path} is damaged: {error}; {_RECOVER}") from error
+
+    def summary(self) -> LessonSummary:
+        """Read the whole file, and so check all of it; UserError as for `parts`."""
+        return summarise(self.header, self.parts())
+
+
+class PartDecoder:
+    """Turns chunks into parts, in their order in the file, and sees to it that none is missing."""
+
+    def __init__(self) -> None:
+        self._sequence = 0
+        self._segment_ns: int | None = None
+
+    def decode(self, place: Place) -> LessonPart:
+        """The part of the next chunk; DamageError if it is changed or not the next one."""
+        marked, *rest = self._numbered(place)
+        if marked.channel_id != MARK:
+            raise DamageError(f"the chunk at byte {place.start} does not say what it is part of")
+        try:
+            mark = msgspec.json.decode(marked.data, type=Mark)
+            entries = tuple(entry(message.channel_id, message.publish_time, message.data) for message in rest)
+        except (msgspec.MsgspecError, KeyError) as error:
+            raise DamageError(f"the chunk at byte {place.start} holds what no lesson does") from error
+        begins = mark.segment_ns != self._segment_ns
+        self._segment_ns = mark.segment_ns
+        return LessonPart(mark.segment_ns, mark.sequence, begins, mark.gap, entries)
+
+    def _numbered(self, place: Place) -> tuple[Message, ...]:
+        found = messages(place)
+        first = self._sequence
+        self._sequence += len(found)
+        if not found or [message.sequence for message in found] != list(range(first, self._sequence)):
+            raise DamageError(f"something is missing before byte {place.end}")
+        return found
+
+
+def summarise(header: LessonHeader, parts: Iterator[LessonPart]) -> LessonSummary:
+    """The figures of a lesson's parts."""
+    count = segments = gaps = 0
+    kinds: dict[str, int] = {}
+    first_ns, end_ns = None, header.started_ns
+    for part in parts:
+        count += 1
+        segments += part.begins_segment
+        gaps += bool(part.gap)
+        for item in part.entries:
+            kinds[item.kind] = kinds.get(item.kind, 0) + 1
+        if part.entries:
+            first_ns = part.entries[0].t_ns if first_ns is None else first_ns
+            end_ns = max(end_ns, part.entries[-1].t_ns)
+    return LessonSummary(0.0 if first_ns is None else (end_ns - first_ns) * 1e-9, count, segments, gaps, kinds, end_ns)
+
+
+def open_lesson(path: Path) -> Lesson:
+    """Open a finished lesson.
+
+    Raises:
+        UserError: there is none, it is no lesson, of a newer KineBox, still being written, or its beginning is damaged.
+    """
+    if path.name.endswith(PART_SUFFIX):
+        raise UserError(f"lesson {path} is not finished; end its recording, or start KineBox, which recovers what a crash left")
+    try:
+        file = path.open("rb")
+    except FileNotFoundError as error:
+        raise UserError(f"lesson {path} does not exist; 'kinebox lessons' lists what there is") from error
+    except OSError as error:
+        raise UserError(f"lesson {path} cannot be read: {error.strerror}; correct its path or its permissions") from error
+    try:
+        return Lesson(path, file)
+    except BaseException:
+        file.close()
+        raise
+
+
+def read_header(path: Path, file: BinaryIO) -> LessonHeader:
+    """The header of a lesson, finished or not; UserError if it has none that can be read. Reads from the file's beginning."""
+    foreign = UserError(f"{path} is no lesson of KineBox; name a file that 'kinebox lessons' lists")
+    file.seek(0)
+    try:
+        records = walk(file)
+        first = next(records)
+        if first.opcode != Opcode.HEADER or parse(Header, first).profile != PROFILE:
+            raise foreign
+        second = next(records)
+        metadata = parse(Metadata, second) if second.opcode == Opcode.METADATA else None
+        if metadata is None or metadata.name != lesson_header.NAME:
+            raise DamageError(f"the record at byte {second.start} is not the lesson's header")
+        return LessonHeader.from_metadata(metadata.metadata)
+    except NewerFormatError as error:
+        raise UserError(f"lesson {path} was recorded by a newer KineBox: {error}; update this one to read it") from error
+    except HeaderError as error:
+        raise UserError(f"lesson {path} is damaged: {error}, and nothing can be read without it; use a copy of the file") from error
+    except DamageError as error:
+        if file.seek(0) == 0 and file.read(1) == b"\x89":
+            raise UserError(f"lesson {path} is damaged: {error}; use a copy of the file") from error
+        raise foreign from error
