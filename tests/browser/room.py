@@ -10,7 +10,7 @@ import numpy as np
 from models.camera.rig import Rig
 from models.config.site import CameraConfig, Site, TabletConfig
 from models.messages import codec, topics
-from models.messages.health import CameraHealth, FusionHealth, Health
+from models.messages.health import CameraHealth, FusionHealth, Health, RecorderHealth
 from models.messages.motion import CameraUse, JointState, Motion
 from models.process import Bus, ProcessContext, Resources
 from models.skeleton import coco
@@ -42,6 +42,7 @@ class Scene:
         lost: cameras whose processes are gone.
         fresh_hz: inferences a second of every camera.
         pupil: what fusion says about the pupil.
+        recorded_s: length of the lesson that is being recorded; None while none is.
     """
 
     speed: float = 1.0
@@ -50,6 +51,7 @@ class Scene:
     lost: frozenset[str] = frozenset()
     fresh_hz: float = 14.6
     pupil: str = "found"
+    recorded_s: float | None = None
 
 
 class Room:
@@ -146,6 +148,9 @@ class Room:
             rates = CameraHealth(camera, 30.0, scene.fresh_hz - 0.3 * index, 15.0, 12 + 7 * index, 21.0 + 3 * index, "thunder", {})
             self._say(bus, Health(f"edge-{camera}", 100 + index, now_ns, "ok", "", 0.36, 214.0, camera=rates))
         fusion = FusionHealth(29.8, 4.2, 0.83, 0, {}, "found" if scene.pupil == "found" else "searching")
+        lesson = "" if scene.recorded_s is None else "2026-11-22-7b"
+        recorder = RecorderHealth(lesson, "7b, throwing", scene.recorded_s or 0.0, 2.5, 0)
+        self._say(self._fusion, Health("recorder", 98, now_ns, "ok", "", 0.01, 60.0, recorder=recorder))
         self._say(self._fusion, Health("fusion", 99, now_ns, "ok", "", 0.21, 186.0, fusion=fusion))
 
     def _say(self, bus: MemoryBus, health: Health) -> None:

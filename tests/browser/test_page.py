@@ -184,7 +184,19 @@ def test_the_rates_that_run_are_on_the_page(page: Page, room: Room) -> None:
     expect(page.get_by_role("button", name="Details")).to_be_focused()
 
 
+def test_recording_is_told_with_its_length_while_it_lasts(page: Page, room: Room) -> None:
+    open_live(page, room)
+    chip = page.locator("[data-recording]")
+    expect(chip).to_have_count(0)
+    with_scene(room, recorded_s=723.4)
+    expect(chip).to_have_text("Recording 12:03")
+    expect(page.get_by_text("Live", exact=True)).to_be_visible()
+    with_scene(room, recorded_s=None)
+    expect(chip).to_have_count(0)
+
+
 def test_a_phone_shows_figure_and_cameras_without_sideways_scrolling(browser: Browser, room: Room) -> None:
+    with_scene(room, recorded_s=3725.0)
     page = browser.new_page(viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True)
     shown = open_live(page, room)
     assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
@@ -215,6 +227,7 @@ def test_a_warning_on_a_phone_stands_above_the_figure(browser: Browser, room: Ro
 
 @pytest.mark.parametrize("phase", ["live", "lost", "offline", "details"])
 def test_the_page_is_accessible(page: Page, room: Room, phase: str) -> None:
+    with_scene(room, recorded_s=61.0)
     shown = open_live(page, room)
     if phase == "lost":
         with_scene(room, lost=frozenset({CAMERAS[1]}), fresh_hz=5.0)

@@ -52,6 +52,8 @@ const phases: Record<Phase, { pill: string; title: string; words: string }> = {
 /** The networks' names mean nothing to a teacher; the technician reads them in the details. */
 const ways: Record<string, string> = { thunder: 'exact', lightning: 'fast' };
 
+const days = new Intl.DateTimeFormat('en-GB', { dateStyle: 'long' });
+const day = (ms: number): string => days.format(ms);
 const seconds = (s: number): string => (s === 1 ? '1 second' : `${s} seconds`);
 const number = (value: number | null, digits = 0): string => (value === null ? '–' : value.toFixed(digits));
 
@@ -61,6 +63,21 @@ export const text = {
   phases,
   gettingReady: { title: 'Cameras are getting ready', words: 'One moment.' },
   staleFor: (s: number): string => `No new movement for ${seconds(s)}`,
+
+  lesson: {
+    recording: 'Recording',
+    /** Minutes and seconds, with hours where there are any. */
+    clock: (s: number | null): string => {
+      if (s === null) return '–';
+      const whole = Math.floor(s);
+      const minutes = Math.floor(whole / 60) % 60;
+      const hours = Math.floor(whole / 3600);
+      const parts = hours > 0 ? [hours, String(minutes).padStart(2, '0')] : [minutes];
+      return [...parts, String(whole % 60).padStart(2, '0')].join(':');
+    },
+    replay: (title: string, beganMs: number): string => ['Replay', title, day(beganMs)].filter(Boolean).join(' · '),
+    speed: (factor: number): string => `${factor}×`,
+  },
 
   view: {
     label: 'The pupil in 3D',

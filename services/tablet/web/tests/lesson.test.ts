@@ -1,0 +1,24 @@
+import { describe, expect, it } from 'vitest';
+import { text } from '../src/text/en';
+
+describe('the clock of a lesson', () => {
+  it.each([
+    [0, '0:00'],
+    [59.9, '0:59'],
+    [723, '12:03'],
+    [3600, '1:00:00'],
+    [3725.4, '1:02:05'],
+  ])('%d s reads %s', (s, words) => {
+    expect(text.lesson.clock(s)).toBe(words);
+  });
+
+  it('does not claim a time that is not known', () => {
+    expect(text.lesson.clock(null)).toBe('–');
+  });
+});
+
+it('a replay is named with its title and day, or with its day alone', () => {
+  const noon = Date.UTC(2026, 10, 22, 12);
+  expect(text.lesson.replay('7b, throwing', noon)).toBe('Replay · 7b, throwing · 22 November 2026');
+  expect(text.lesson.replay('', noon)).toBe('Replay · 22 November 2026');
+});
