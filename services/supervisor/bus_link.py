@@ -4,7 +4,7 @@ import threading
 from typing import Literal
 
 from models.messages import codec, topics
-from models.messages.health import Health
+from models.messages.health import Health, MachineHealth, SupervisorHealth
 from models.process import Bus, Subscription
 from services.support.health import HealthReporter, ResourceMeter
 
@@ -38,19 +38,23 @@ class BusLink:
                 continue  # Who speaks unintelligibly is silent, and treated as such.
         return messages
 
-    def say(self, fault: str, trouble: str, failed: dict[str, str]) -> None:
+    def say(
+        self, fault: str, trouble: str, failed: dict[str, str], machine: MachineHealth | None, supervisor: SupervisorHealth
+    ) -> None:
         """Once a second, publish how the box is held together.
 
         Args:
             fault: what is given up; makes the state "failed".
-            trouble: what is being mended; makes it "degraded".
+            trouble: what is being mended, or is wrong with the machine; makes it "degraded".
             failed: reasons by name of the processes that are given up, for which nobody else speaks now.
+            machine: its newest measurement.
+            supervisor: what became of the processes.
         """
         bus, reporter = self._bus, self._reporter
         if bus is None or reporter is None or not reporter.due():
             return
         state: Literal["ok", "degraded", "failed"] = "failed" if fault else "degraded" if trouble else "ok"
-        own = reporter.report(state, fault or trouble)
+        own = reporter.report(state, fault or trouble, machine=machine, supervisor=supervisor)
         for name, reason in failed.items():
             message = Health(name, own.pid, own.t_ns, "failed", reason, cpu_cores=0.0, rss_mb=0.0)
             bus.publish(topics.health(name), codec.encode(message))

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from models.config.site import SupervisorConfig
 from models.errors import USER_ERROR_CODE
+from models.messages.health import Restarts
 from services.supervisor.child import Child, ChildSpec
 from services.supervisor.policy import GiveUp, History, Restart, decide
 
@@ -23,6 +24,8 @@ class Post:
         given_up: why it was given up; empty if it was not.
         reported: the state that a person was last told.
         first_heard_s: when the running process spoke first, on CLOCK_MONOTONIC; None if it has not.
+        ended_s: when it ended last, on CLOCK_MONOTONIC; None if it never did.
+        last_end: what became of it then, as a verb.
     """
 
     spec: ChildSpec
@@ -32,6 +35,8 @@ class Post:
     given_up: str = ""
     reported: str = "ok"
     first_heard_s: float | None = None
+    ended_s: float | None = None
+    last_end: str = ""
     hangs: bool = False
     history: History = field(default_factory=History)
 
@@ -57,10 +62,11 @@ class Post:
         """The process ended: decide what becomes of the post."""
         self.child = None
         self.reported, self.first_heard_s = "ok", None
-        if code == USER_ERROR_CODE and not self.hangs:
-            self.given_up = user_error or describe_exit(code)
-            return
         why = "hung" if self.hangs else describe_exit(code)
+        self.ended_s, self.last_end = now_s, why
+        if code == USER_ERROR_CODE and not self.hangs:
+            self.given_up = user_error or why
+            return
         decision = decide(self.history, now_s, config)
         match decision:
             case GiveUp(reason):
@@ -69,6 +75,13 @@ class Post:
                 self.history = self.history.add(decision)
                 self.start_at_s = at_s
                 self.trouble = f"{self.name} {why} and is started again"
+
+    @property
+    def restarts(self) -> Restarts | None:
+        """What is told of it on the bus; None if it never ended."""
+        if self.ended_s is None:
+            return None
+        return Restarts(self.name, len(self.history.restarts_s), round(self.ended_s * 1e9), self.last_end, self.given_up)
 
 
 def describe_exit(code: int) -> str:

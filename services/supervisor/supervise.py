@@ -13,16 +13,20 @@ from threading import Event
 
 from models.config.site import Site
 from models.errors import USER_ERROR_CODE
+from models.messages.health import SupervisorHealth
 from models.process import EDGE, ROUTER, Check
 from services.supervisor import page
 from services.supervisor.bus_link import BusLink
 from services.supervisor.child import Child, ChildSpec
 from services.supervisor.journal import Journal
+from services.supervisor.machine_watch import MachineWatch
 from services.supervisor.post import Post, describe_exit
 from services.supervisor.preflight import check_everything
 from services.supervisor.silence import Silence
 from services.support.environment import process_environment
+from services.support.machine import MachineMeter
 from services.support.signals import stop_on_signals
+from services.support.version import kinebox_version
 
 TICK_S = 0.1
 HELD_UP_S = 1.0
@@ -69,7 +73,9 @@ class Supervisor:
         self._environment = dict(os.environ) | process_environment(data)
         # Now, not later: a source begins with the picture that is due when it is ready, so waiting would gain nothing.
         self._start_ns = time.monotonic_ns()
+        self._version = kinebox_version()
         self._silence = Silence(ROUTER)
+        self._machine = MachineWatch(MachineMeter(data))
         self._page_answers = False
 
     def run(self, stop: Event) -> None:
@@ -98,6 +104,7 @@ class Supervisor:
             for post in self._posts:
                 self._attend(post, now_s)
             self._kill_hung(now_s)
+            self._look_at_machine(now_s)
             self._speak(link)
             self._welcome()
 
@@ -162,8 +169,13 @@ class Supervisor:
     def _speak(self, link: BusLink) -> None:
         failed = {post.name: post.given_up for post in self._posts if post.given_up}
         fault = "; ".join(f"{name} is given up: {reason}" for name, reason in failed.items())
-        trouble = "; ".join(post.trouble for post in self._posts if post.trouble)
-        link.say(fault, trouble, failed)
+        trouble = "; ".join(filter(None, (*(post.trouble for post in self._posts), self._machine.trouble)))
+        restarts = tuple(restarts for post in self._posts if (restarts := post.restarts) is not None)
+        link.say(fault, trouble, failed, self._machine.newest, SupervisorHealth(self._version, self._start_ns, restarts))
+
+    def _look_at_machine(self, now_s: float) -> None:
+        for trouble in self._machine.look(now_s):
+            self._journal.say(f"{trouble.words}; {trouble.remedy}", level="warning")
 
     def _welcome(self) -> None:
         if not self._page_answers and page.answers(self._site.tablet):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import psutil
 
-_CGROUP = Path("/sys/fs/cgroup")
+from services.support.cgroup import own_cgroup, upwards
 
 
 class CpuMeter:
@@ -14,7 +14,7 @@ class CpuMeter:
 
     def __init__(self, cgroup: Path | None = None) -> None:
         self._cpus = sorted(os.sched_getaffinity(0))
-        self._quota_cores, self._cgroup = _tightest_quota(cgroup if cgroup is not None else _own_cgroup())
+        self._quota_cores, self._cgroup = _tightest_quota(cgroup if cgroup is not None else own_cgroup())
         self._read_at = time.monotonic()
         self._usage_s = _usage_s(self._cgroup)
         psutil.cpu_percent(percpu=True)
@@ -40,28 +40,18 @@ class CpuMeter:
         return max(by_quota, on_cpus - (len(self._cpus) - self.granted_cores))
 
 
-def _own_cgroup() -> Path | None:
-    try:
-        line = Path("/proc/self/cgroup").read_text().splitlines()[-1]
-    except (OSError, IndexError):
-        return None
-    folder = _CGROUP / line.split(":")[-1].lstrip("/")
-    return folder if folder.is_dir() else None
-
-
 def _tightest_quota(cgroup: Path | None) -> tuple[float | None, Path | None]:
     """The smallest `cpu.max` from this control group up to the root, and the group that it is shared by."""
     smallest: float | None = None
     limited: Path | None = None
-    while cgroup is not None and cgroup != cgroup.parent:
+    for group in upwards(cgroup):
         try:
-            quota, period = (cgroup / "cpu.max").read_text().split()
+            quota, period = (group / "cpu.max").read_text().split()
             cores = float("inf") if quota == "max" else int(quota) / int(period)
         except (OSError, ValueError):
             cores = float("inf")
         if cores < (smallest or float("inf")):
-            smallest, limited = cores, cgroup
-        cgroup = cgroup.parent if cgroup != _CGROUP else None
+            smallest, limited = cores, group
     return smallest, limited
 
 

@@ -1,0 +1,43 @@
+"""The machine as the supervisor watches it: measured once a second, and told to a person when something becomes wrong."""
+
+from collections.abc import Callable
+
+from models.messages.health import MachineHealth
+from services.support.machine_troubles import MachineTrouble, machine_troubles
+
+PERIOD_S = 1.0
+QUIET_S = 60.0
+"""A trouble that comes and goes is told again only after it was away for so long."""
+
+
+class MachineWatch:
+    """Keeps the newest measurement.
+
+    Args:
+        measure: reads the machine.
+    """
+
+    def __init__(self, measure: Callable[[], MachineHealth]) -> None:
+        self._measure = measure
+        self._next_s = float("-inf")
+        self._seen_s: dict[str, float] = {}
+        self.newest: MachineHealth | None = None
+
+    @property
+    def trouble(self) -> str:
+        """All that is wrong now, in one line; empty if nothing is."""
+        return "; ".join(trouble.words for trouble in self._troubles())
+
+    def look(self, now_s: float) -> list[MachineTrouble]:
+        """Measure if a second has passed, and return what a person has to be told of it for the first time."""
+        if now_s < self._next_s:
+            return []
+        self._next_s = now_s + PERIOD_S
+        self.newest = self._measure()
+        troubles = self._troubles()
+        news = [trouble for trouble in troubles if now_s - self._seen_s.get(trouble.code, float("-inf")) > QUIET_S]
+        self._seen_s |= {trouble.code: now_s for trouble in troubles}
+        return news
+
+    def _troubles(self) -> tuple[MachineTrouble, ...]:
+        return machine_troubles(self.newest) if self.newest is not None else ()
