@@ -2,6 +2,11 @@
 
 A lesson replays only from a state that is known, and that is fusion's first one. So a recorder that begins, or that has missed
 something, asks fusion to begin anew; from then on fusion publishes everything that it takes in, in its order, as one *segment*.
+The figure is grey for a moment then, as at the start of the box: fusion has to find the pupil again.
+
+The recorder repeats its request for as long as it records. A repeated request keeps the log running and begins nothing, so it
+does not matter how many of them are lost; a fusion process that was restarted, or has stopped the log, does not know the
+request and begins a segment by it. The recorder takes every part whose `segment_ns` is later than its request's `t_ns`.
 """
 
 from typing import Literal
@@ -9,6 +14,8 @@ from typing import Literal
 import msgspec
 
 MAX_TITLE = 80
+LEASE_NS = 10_000_000_000
+"""Fusion stops the log when the request was not repeated for so long: the recorder is gone, or does not record any more."""
 
 
 class Entry(msgspec.Struct, frozen=True, array_like=True):
@@ -16,7 +23,8 @@ class Entry(msgspec.Struct, frozen=True, array_like=True):
 
     Attributes:
         kind: "observation" and "tick" are fusion's input; "motion" (smooth) is its output; "health" is what a process said.
-        t_ns: CLOCK_MONOTONIC at which fusion took it in or gave it out; never decreases within a segment.
+        t_ns: CLOCK_MONOTONIC at which fusion took it in or gave it out; of a tick, when it was due, which may be earlier than
+            the observation before it.
         payload: the message as it was on the bus; empty for a tick, whose time is `t_ns`.
     """
 
@@ -40,7 +48,11 @@ class FusionLog(msgspec.Struct, frozen=True):
 
 
 class SegmentRequest(msgspec.Struct, frozen=True):
-    """Begin with a new state, and log from there (recorder -> fusion). `t_ns`: CLOCK_MONOTONIC when it was asked."""
+    """Begin with a new state, and log from there (recorder -> fusion).
+
+    `t_ns`: CLOCK_MONOTONIC when it was asked first; names the request, which is repeated unchanged. Of two requests the later one
+    counts.
+    """
 
     t_ns: int
 

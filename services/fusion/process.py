@@ -9,12 +9,14 @@ import structlog
 from models.messages import codec, topics
 from models.messages.control import ViewControl
 from models.messages.health import CameraHealth, FusionHealth, Health
+from models.messages.lesson import SegmentRequest
 from models.messages.motion import Motion
 from models.messages.observation import Observation
 from models.process import Delivery, ProcessContext
 from services.fusion import governor
 from services.fusion.config import PRESETS
 from services.fusion.governor import GovernorState, Load
+from services.fusion.log import SegmentLog
 from services.fusion.pipeline import FusionOutput, Tick, initial_state, predict_views, step
 from services.fusion.warm_up import warm_up
 from services.support.cpu import CpuMeter
@@ -64,6 +66,7 @@ class FusionLoop:
         self._cpu = cpu
         self._config = PRESETS[context.site.fusion.preset]
         self._state = initial_state(context.rig)
+        self._log = SegmentLog()
         self._governor = GovernorState()
         self._names = context.rig.names
         self._observations = {topics.observation(name) for name in self._names}
@@ -77,7 +80,7 @@ class FusionLoop:
     def run(self) -> None:
         """Take observations as they come and tick at the live rate; ticks that were missed are not made up for."""
         self._bus.declare_alive(topics.alive(self._context.name))
-        subscription = self._bus.subscribe(*sorted(self._observations), topics.ALL_HEALTH, keep=KEEP)
+        subscription = self._bus.subscribe(*sorted(self._observations), topics.ALL_HEALTH, topics.segment_request(), keep=KEEP)
         period_ns = round(SECOND_NS / self._context.site.fusion.live_hz)
         tick_ns = time.monotonic_ns()
         ticks = 0
@@ -92,6 +95,8 @@ class FusionLoop:
                 self._step(Tick(tick_ns))
                 if ticks % CONTROL_EVERY_TICKS == 0:
                     self._control(now_ns)
+                if (part := self._log.part(now_ns)) is not None:
+                    self._bus.publish(topics.fusion_log(), codec.encode(part))
                 ticks += 1
                 tick_ns += ((now_ns - tick_ns) // period_ns + 1) * period_ns
                 if now_ns - self._second.began_ns >= SECOND_NS:
@@ -100,18 +105,32 @@ class FusionLoop:
             subscription.close()
 
     def _receive(self, delivery: Delivery) -> None:
+        now_ns = time.monotonic_ns()
         try:
             if delivery.topic in self._observations:
-                self._step(_observation(delivery))
+                observation = _observation(delivery)
+                self._log.add("observation", now_ns, delivery.payload)
+                self._step(observation)
+                return
+            if delivery.topic == topics.segment_request():
+                self._begin_segment(codec.decode(delivery.payload, SegmentRequest), now_ns)
                 return
             camera = codec.decode(delivery.payload, Health).camera
+            self._log.add("health", now_ns, delivery.payload)
         except codec.CodecError as error:
             if self._second.rejected == 0:  # one a second says enough, and fills no disk
                 log.warning("message refused", topic=delivery.topic, reason=str(error))
             self._second.rejected += 1
             return
         if camera is not None and camera.camera in self._names:
-            self._cameras[camera.camera] = (time.monotonic_ns(), camera)
+            self._cameras[camera.camera] = (now_ns, camera)
+
+    def _begin_segment(self, request: SegmentRequest, now_ns: int) -> None:
+        """Forget everything if a lesson is to begin here: it can be replayed only from a state that is known."""
+        if self._log.ask(request, now_ns):
+            self._state = initial_state(self._context.rig)
+            self._second.ignored_before = {}
+            self._searching = {}
 
     def _step(self, event: Observation | Tick) -> None:
         began_ns = time.thread_time_ns()
@@ -120,6 +139,7 @@ class FusionLoop:
         self._found = output.found
         if isinstance(event, Tick):
             self._second.ticks += 1
+            self._log.add("tick", event.t_ns)
             self._publish(output)
 
     def _publish(self, output: FusionOutput) -> None:
@@ -127,8 +147,12 @@ class FusionLoop:
             self._searching = output.searching
         for motion in output.motions:
             self._second.live += motion.kind == "live"
-            stamped: Motion = msgspec.structs.replace(motion, t_published_ns=time.monotonic_ns())
-            self._bus.publish(topics.motion(motion.kind), codec.encode(stamped))
+            now_ns = time.monotonic_ns()
+            stamped: Motion = msgspec.structs.replace(motion, t_published_ns=now_ns)
+            payload = codec.encode(stamped)
+            self._bus.publish(topics.motion(motion.kind), payload)
+            if motion.kind == "smooth":
+                self._log.add("motion", now_ns, payload)
 
     def _control(self, now_ns: int) -> None:
         """Tell every camera its rate, its network, its place in the turn, and where to look."""

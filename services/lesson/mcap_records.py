@@ -6,7 +6,7 @@ lies, which recovery must know, nor bound what a corrupt length makes them alloc
 
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from io import BytesIO
 from typing import BinaryIO, NamedTuple, Protocol, TypeVar
 
@@ -14,7 +14,7 @@ import zstandard
 from mcap.data_stream import ReadDataStream, RecordBuilder
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Chunk, DataEnd, McapRecord, Message
+from mcap.records import Chunk, DataEnd, McapRecord, Message, MessageIndex
 
 MAGIC = b"\x89MCAP0\r\n"
 _HEAD = struct.Struct("<BQ")
@@ -30,12 +30,19 @@ class DamageError(ValueError):
 
 
 class Place(NamedTuple):
-    """One record of a file: from byte `start` up to byte `end`, its content without opcode and length."""
+    """One record of a file.
+
+    Attributes:
+        start, end: it lies from byte `start` up to byte `end`.
+        body: its content without opcode and length.
+        checksum: CRC-32 of the file up to `end`.
+    """
 
     opcode: int
     start: int
     end: int
     body: bytes
+    checksum: int
 
 
 class _Readable(Protocol[RecordT_co]):
@@ -63,7 +70,7 @@ def walk(file: BinaryIO) -> Iterator[Place]:
         body = file.read(length)
         if len(body) < length:
             raise DamageError(f"it is cut off within the record at byte {start}")
-        place = Place(opcode, start, start + len(head) + length, body)
+        place = Place(opcode, start, start + len(head) + length, body, zlib.crc32(body, zlib.crc32(head, checksum)))
         if opcode == Opcode.DATA_END and parse(DataEnd, place).data_section_crc not in (0, checksum):
             raise DamageError("its data differ from their check sum")
         yield place
@@ -71,7 +78,7 @@ def walk(file: BinaryIO) -> Iterator[Place]:
             if file.read(len(MAGIC) + 1) != MAGIC:
                 raise DamageError(f"it does not end as an MCAP file after byte {place.end}")
             return
-        start, checksum = place.end, zlib.crc32(body, zlib.crc32(head, checksum))
+        start, checksum = place.end, place.checksum
 
 
 def parse(kind: type[_Readable[RecordT_co]], place: Place) -> RecordT_co:
@@ -107,6 +114,26 @@ def messages(place: Place) -> tuple[Message, ...]:
         return tuple(_messages(data))
     except struct.error as error:
         raise DamageError(f"the chunk at byte {place.start} is none that KineBox writes") from error
+
+
+def encode_messages(messages: Sequence[Message]) -> bytes:
+    """Messages as the content of a chunk. (Several times as fast as `encode`.)"""
+    parts = []
+    for message in messages:
+        parts.append(_HEAD.pack(Opcode.MESSAGE, _MESSAGE.size + len(message.data)))
+        parts.append(_MESSAGE.pack(message.channel_id, message.sequence, message.log_time, message.publish_time))
+        parts.append(message.data)
+    return b"".join(parts)
+
+
+def message_indexes(messages: Sequence[Message]) -> list[MessageIndex]:
+    """Where the messages lie in the chunk that they are the content of: one record a channel, as they follow the chunk."""
+    indexes: dict[int, MessageIndex] = {}
+    at = 0
+    for message in messages:
+        indexes.setdefault(message.channel_id, MessageIndex(message.channel_id, [])).records.append((message.log_time, at))
+        at += _HEAD.size + _MESSAGE.size + len(message.data)
+    return list(indexes.values())
 
 
 def encode(*records: McapRecord) -> bytes:

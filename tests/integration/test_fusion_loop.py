@@ -11,14 +11,17 @@ import msgspec
 import numpy as np
 import pytest
 
-from models.config.site import CameraConfig, Site
+from models.config.site import SITE_VERSION, CameraConfig, Site
 from models.messages import codec, topics
 from models.messages.control import ViewControl
 from models.messages.health import CameraHealth, FusionHealth, Health
+from models.messages.lesson import Entry, FusionLog, SegmentRequest
 from models.messages.motion import JointState, Motion
 from models.messages.observation import Crop, Observation, Person
 from models.process import Bus, ProcessContext, Resources, Subscription
 from services.bus.memory import MemoryRouter
+from services.fusion.config import PRESETS
+from services.fusion.pipeline import Tick, initial_state, step
 from services.fusion.process import FusionLoop
 from services.support.cpu import CpuMeter
 from tests.integration.waiting import DEADLINE_S, until
@@ -37,6 +40,7 @@ class Room:
     live: Subscription
     healths: Subscription
     controls: Subscription
+    logs: Subscription
     sequence: int = 0
 
     def film(self, epoch: int = 0, camera_named: str | None = None) -> None:
@@ -85,13 +89,14 @@ def running(tmp_path: Path) -> Iterator[Room]:
         live=other.subscribe(topics.motion("live"), keep=1),
         healths=other.subscribe(topics.health("fusion"), keep=2),
         controls=other.subscribe(*(topics.control(name) for name in RIG.names), keep=1),
+        logs=other.subscribe(topics.fusion_log(), keep=1000),
     )
     cameras = [CameraConfig(name=name, kind="video", path="none.avi") for name in RIG.names]
     stop = threading.Event()
     context = ProcessContext(
         name="fusion",
         camera=None,
-        site=Site(version=1, name="test", calibration="rig.toml", cameras=cameras),
+        site=Site(version=SITE_VERSION, name="test", calibration="rig.toml", cameras=cameras),
         rig=RIG,
         data=tmp_path,
         start_ns=time.monotonic_ns(),
@@ -189,3 +194,71 @@ def test_a_word_of_health_of_an_unknown_camera_takes_no_part_in_the_plan(tmp_pat
         said, _ = room.fusion_health()
     assert "elsewhere" not in said.reason
     assert msgspec.structs.asdict(said)["process"] == "fusion"
+
+
+def log_a_segment(room: Room, smooth: int) -> list[FusionLog]:
+    """Ask for a segment and film until so many smooth motions are in its log."""
+    asked_ns = time.monotonic_ns()
+    room.bus.publish(topics.segment_request(), codec.encode(SegmentRequest(asked_ns)))
+    parts: list[FusionLog] = []
+
+    def enough() -> bool:
+        room.film()
+        room.newest_live()
+        while (delivery := room.logs.receive(0.0)) is not None:
+            part = codec.decode(delivery.payload, FusionLog)
+            if part.segment_ns > asked_ns:
+                parts.append(part)
+        return sum(entry.kind == "motion" for entry in entries_of(parts)) >= smooth
+
+    until(enough, f"{smooth} smooth motions in the log")
+    assert len({part.segment_ns for part in parts}) == 1
+    assert [part.sequence for part in parts] == list(range(len(parts)))
+    return parts
+
+
+def entries_of(parts: list[FusionLog]) -> list[Entry]:
+    return [entry for part in parts for entry in part.entries]
+
+
+def replayed(entries: list[Entry]) -> tuple[list[bytes], list[bytes]]:
+    """The smooth motions of a log, and those that its observations and ticks give again; both without the time of publishing."""
+
+    def bare(motion: Motion) -> bytes:
+        return codec.encode(msgspec.structs.replace(motion, t_published_ns=0))
+
+    state, logged, again = initial_state(RIG), [], []
+    for entry in entries:
+        if entry.kind == "motion":
+            logged.append(bare(codec.decode(entry.payload, Motion)))
+        elif entry.kind in ("observation", "tick"):
+            event = Tick(entry.t_ns) if entry.kind == "tick" else codec.decode(entry.payload, Observation)
+            state, output = step(state, event, PRESETS["default"])
+            again += [bare(motion) for motion in output.motions if motion.kind == "smooth"]
+    return logged, again
+
+
+def test_the_log_of_a_segment_gives_the_same_motion_again_to_the_last_bit(tmp_path: Path) -> None:
+    with running(tmp_path) as room:
+        room.film_until_seen()
+        parts = log_a_segment(room, smooth=40)
+    logged, again = replayed(entries_of(parts))
+    assert len(logged) >= 40
+    assert logged == again
+    assert (codec.decode(logged[-1], Motion).states == JointState.SEEN).all()
+
+
+def test_a_later_request_begins_a_segment_that_replays_by_itself(tmp_path: Path) -> None:
+    with running(tmp_path) as room:
+        first, second = log_a_segment(room, smooth=20), log_a_segment(room, smooth=20)
+    assert second[0].segment_ns > first[0].segment_ns
+    for parts in (first, second):
+        logged, again = replayed(entries_of(parts))
+        assert logged == again
+
+
+def test_health_that_fusion_heard_is_in_its_log(tmp_path: Path) -> None:
+    with running(tmp_path) as room:
+        parts = log_a_segment(room, smooth=40)
+    heard = [codec.decode(entry.payload, Health) for entry in entries_of(parts) if entry.kind == "health"]
+    assert any(health.process == "fusion" for health in heard)

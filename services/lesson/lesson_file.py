@@ -1,0 +1,242 @@
+"""Writing a lesson: an MCAP file that is whole up to its last synced part at every moment.
+
+A part of fusion's log is written as one chunk, in one piece, and synced before `append` returns. The file is called `.mcap.part`
+until its summary is written. Opening a file that a crash left is the same as going on with one: it is cut after its last whole
+chunk, and from there it can be appended to or finished.
+"""
+
+import os
+import struct
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import BinaryIO
+
+import msgspec
+import zstandard
+from mcap.opcode import Opcode
+from mcap.records import (
+    Chunk,
+    ChunkIndex,
+    DataEnd,
+    Footer,
+    Header,
+    McapRecord,
+    Message,
+    Metadata,
+    MetadataIndex,
+    Statistics,
+    SummaryOffset,
+)
+
+from models.messages.lesson import FusionLog
+from services.lesson import lesson_header
+from services.lesson.layout import CHANNEL_OF, CHANNELS, MARK, PART_SUFFIX, PROFILE, SCHEMAS, SUFFIX, Mark
+from services.lesson.lesson_header import LessonHeader
+from services.lesson.mcap_records import MAGIC, encode, encode_messages, message_indexes
+
+_COMPRESSION = "zstd"
+_LEVEL = 3
+
+
+@dataclass
+class Contents:
+    """What a file holds up to its end, from which its summary is written.
+
+    Attributes:
+        end: size of the file in bytes.
+        checksum: CRC-32 of all bytes until there.
+        metadata: where the header lies.
+        chunks: where the chunks lie.
+        counts: messages by channel.
+        sequence: number of the next message.
+        log_time_ns: of the latest message; log times never go back.
+    """
+
+    end: int = 0
+    checksum: int = 0
+    metadata: MetadataIndex | None = None
+    chunks: list[ChunkIndex] = field(default_factory=list)
+    counts: dict[int, int] = field(default_factory=dict)
+    sequence: int = 0
+    log_time_ns: int = 0
+
+    def take_chunk(self, start: int, length: int, chunk: Chunk, messages: Sequence[Message]) -> None:
+        """Note a chunk that lies at byte `start`, its message indexes behind it."""
+        offsets, at = {}, start + length
+        for index in message_indexes(messages):
+            offsets[index.channel_id] = at
+            at += len(encode(index))
+            self.counts[index.channel_id] = self.counts.get(index.channel_id, 0) + len(index.records)
+        self.chunks.append(
+            ChunkIndex(
+                chunk_length=length,
+                chunk_start_offset=start,
+                compression=chunk.compression,
+                compressed_size=len(chunk.data),
+                message_end_time=chunk.message_end_time,
+                message_index_length=at - start - length,
+                message_index_offsets=offsets,
+                message_start_time=chunk.message_start_time,
+                uncompressed_size=chunk.uncompressed_size,
+            )
+        )
+        self.sequence += len(messages)
+        self.log_time_ns = messages[-1].log_time
+
+
+class LessonWriter:
+    """An unfinished lesson file that is open for writing.
+
+    Args:
+        path: of the file, with `PART_SUFFIX`.
+        file: opened for writing, at its end.
+        contents: what it holds.
+    """
+
+    def __init__(self, path: Path, file: BinaryIO, contents: Contents) -> None:
+        self.path = path
+        self._file = file
+        self._contents = contents
+
+    @classmethod
+    def create(cls, folder: Path, name: str, header: LessonHeader) -> "LessonWriter":
+        """A new lesson; it is on the disk with its header when this returns.
+
+        Raises:
+            OSError: there is one of that name, or it cannot be written.
+        """
+        path = folder / f"{name}{PART_SUFFIX}"
+        file = path.open("xb", buffering=0)
+        contents = Contents()
+        metadata = Metadata(lesson_header.NAME, header.to_metadata())
+        before = MAGIC + encode(Header(PROFILE, f"kinebox {header.kinebox}"))
+        body = encode(metadata)
+        contents.metadata = MetadataIndex(len(before), len(body), metadata.name)
+        writer = cls(path, file, contents)
+        try:
+            writer._write(before + body + encode(*SCHEMAS, *CHANNELS))
+            _sync_folder(folder)
+        except BaseException:
+            file.close()
+            path.unlink()
+            raise
+        return writer
+
+    @property
+    def size(self) -> int:
+        """Bytes that are safe on the disk."""
+        return self._contents.end
+
+    def append(self, part: FusionLog, gap: str = "") -> None:
+        """Write a part; it is safe when this returns.
+
+        Args:
+            part: what fusion logged.
+            gap: why something is missing before it; empty if nothing is.
+
+        Raises:
+            OSError: the disk is full or broken; the file is as it was before, unless it cannot even be cut.
+        """
+        contents = self._contents
+        mark = Mark(part.segment_ns, part.sequence, gap)
+        log_time_ns = max(contents.log_time_ns, part.entries[0].t_ns if part.entries else part.segment_ns)
+        messages = [Message(MARK, log_time_ns, msgspec.json.encode(mark), log_time_ns, contents.sequence)]
+        for number, entry in enumerate(part.entries, start=contents.sequence + 1):
+            log_time_ns = max(log_time_ns, entry.t_ns)
+            messages.append(Message(CHANNEL_OF[entry.kind], log_time_ns, entry.payload, entry.t_ns, number))
+        chunk = _chunk(messages)
+        body = encode(chunk)
+        indexes = [encode(index) for index in message_indexes(messages)]
+        start = contents.end
+        self._write(body + b"".join(indexes))
+        contents.take_chunk(start, len(body), chunk, messages)
+
+    def finish(self) -> Path:
+        """Write the summary, close the file and give it its final name.
+
+        Raises:
+            OSError: as for `append`; the file stays unfinished, and can be finished by recovery.
+        """
+        self._write(_summary(self._contents))
+        self._file.close()
+        finished = self.path.with_name(self.path.name.removesuffix(PART_SUFFIX) + SUFFIX)
+        self.path.rename(finished)
+        _sync_folder(finished.parent)
+        return finished
+
+    def close(self) -> None:
+        """Leave the file as it is, unfinished."""
+        self._file.close()
+
+    def _write(self, data: bytes) -> None:
+        """All of `data` or nothing, and synced."""
+        contents = self._contents
+        try:
+            view = memoryview(data)
+            while view:
+                view = view[self._file.write(view) :]
+            os.fsync(self._file.fileno())
+        except OSError:
+            self._file.seek(contents.end)
+            self._file.truncate()
+            raise
+        contents.end += len(data)
+        contents.checksum = zlib.crc32(data, contents.checksum)
+
+
+def _chunk(messages: list[Message]) -> Chunk:
+    data = encode_messages(messages)
+    return Chunk(
+        compression=_COMPRESSION,
+        data=zstandard.ZstdCompressor(level=_LEVEL).compress(data),
+        message_end_time=messages[-1].log_time,
+        message_start_time=messages[0].log_time,
+        uncompressed_crc=zlib.crc32(data),
+        uncompressed_size=len(data),
+    )
+
+
+def _summary(contents: Contents) -> bytes:
+    """Everything after the last chunk: end of the data, summary, footer."""
+    assert contents.metadata is not None  # noqa: S101 - every file begins with its header
+    data_end = encode(DataEnd(contents.checksum))
+    statistics = Statistics(
+        attachment_count=0,
+        channel_count=len(CHANNELS),
+        channel_message_counts=contents.counts,
+        chunk_count=len(contents.chunks),
+        message_count=sum(contents.counts.values()),
+        message_end_time=contents.chunks[-1].message_end_time if contents.chunks else 0,
+        message_start_time=contents.chunks[0].message_start_time if contents.chunks else 0,
+        metadata_count=1,
+        schema_count=len(SCHEMAS),
+    )
+    groups: list[tuple[Opcode, list[McapRecord]]] = [
+        (Opcode.SCHEMA, [*SCHEMAS]),
+        (Opcode.CHANNEL, [*CHANNELS]),
+        (Opcode.STATISTICS, [statistics]),
+        (Opcode.CHUNK_INDEX, [*contents.chunks]),
+        (Opcode.METADATA_INDEX, [contents.metadata]),
+    ]
+    start = contents.end + len(data_end)
+    summary, offsets = b"", []
+    for opcode, records in groups:
+        group = encode(*records)
+        offsets.append(SummaryOffset(group_length=len(group), group_opcode=opcode, group_start=start + len(summary)))
+        summary += group
+    offsets_start = start + len(summary)
+    summary += encode(*offsets)
+    # The footer up to its own check sum is part of what the sum is over.
+    checksum = zlib.crc32(summary + struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offsets_start))
+    return data_end + summary + encode(Footer(start, offsets_start, checksum)) + MAGIC
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make the names in a folder safe as well."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

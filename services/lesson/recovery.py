@@ -1,0 +1,83 @@
+"""What a crash left is made whole again: cut after its last whole chunk, and then finished or gone on with."""
+
+import shutil
+from pathlib import Path
+from typing import BinaryIO
+
+from mcap.opcode import Opcode
+from mcap.records import Chunk, Message, MetadataIndex
+
+from services.lesson import lesson_header
+from services.lesson.lesson_file import Contents, LessonWriter
+from services.lesson.lesson_reader import PartDecoder, read_header
+from services.lesson.mcap_records import DamageError, Place, encode, message_indexes, messages, parse, walk
+
+DAMAGED_SUFFIX = ".damaged"
+_LARGEST_TAIL = 2 * 2**20
+"""A crash leaves no more behind the last whole chunk; if there is more, the damage is another, and a copy is kept."""
+_BEGINNING = (Opcode.HEADER, Opcode.METADATA, Opcode.SCHEMA, Opcode.CHANNEL)
+
+
+def reopen(path: Path) -> LessonWriter:
+    """Open an unfinished lesson after its last whole chunk; what lies behind that is cut off.
+
+    Raises:
+        UserError: the file has no header that can be read, so there is nothing to recover.
+        OSError: it cannot be read or written.
+    """
+    file = path.open("r+b", buffering=0)
+    try:
+        read_header(path, file)
+        contents = survey(file)
+        if path.stat().st_size - contents.end > _LARGEST_TAIL:
+            shutil.copyfile(path, path.with_name(path.name + DAMAGED_SUFFIX))
+        file.seek(contents.end)
+        file.truncate()
+    except BaseException:
+        file.close()
+        raise
+    return LessonWriter(path, file, contents)
+
+
+def survey(file: BinaryIO) -> Contents:
+    """What a file with a good header holds, up to its first damage or, if there is none, its summary."""
+    contents, chunk = Contents(), _WholeChunk()
+    file.seek(0)
+    try:
+        for place in walk(file):
+            if place.opcode == Opcode.METADATA:
+                contents.metadata = MetadataIndex(place.start, place.end - place.start, lesson_header.NAME)
+            if place.opcode in _BEGINNING and not contents.chunks:
+                contents.end, contents.checksum = place.end, place.checksum
+            elif not chunk.take(place, contents):
+                break
+    except DamageError:
+        pass  # Here the file ends.
+    return contents
+
+
+class _WholeChunk:
+    """Waits for a chunk and all its message indexes, which were written in one piece with it."""
+
+    def __init__(self) -> None:
+        self._decoder = PartDecoder()
+        self._chunk: tuple[Place, tuple[Message, ...]] | None = None
+        self._indexes: list[bytes] = []
+
+    def take(self, place: Place, contents: Contents) -> bool:
+        """The next record of the file, which `contents` gets once the chunk is whole; False if it belongs to no chunk."""
+        if place.opcode == Opcode.CHUNK and not self._indexes:
+            self._decoder.decode(place)
+            found = messages(place)
+            self._chunk = (place, found)
+            self._indexes = [encode(index) for index in message_indexes(found)]
+            return True
+        if self._chunk is None or place.opcode != Opcode.MESSAGE_INDEX or not self._indexes:
+            return False
+        if not self._indexes.pop(0).endswith(place.body):
+            return False
+        if not self._indexes:
+            chunk, found = self._chunk
+            contents.take_chunk(chunk.start, chunk.end - chunk.start, parse(Chunk, chunk), found)
+            contents.end, contents.checksum = place.end, place.checksum
+        return True
