@@ -68,7 +68,7 @@ def open_source(config: CameraConfig, context: ProcessContext, clock: Clock) -> 
     path = context.data / config.path
     video = load_video(path, config.name)
     require_calibrated_size(config.name, video.shape(path), context.rig.cameras[context.rig.index(config.name)].size_px)
-    schedule = Schedule(context.start_ns, round(config.offset_ms * MILLISECOND_NS), config.rate_hz)
+    schedule = Schedule(context.start_ns, round(config.shutter_delay_ms * MILLISECOND_NS), config.rate_hz)
     return VideoSource(video, schedule, clock)
 
 

@@ -1,5 +1,6 @@
 """Schema of the site file. Unknown keys are refused, every field has a description and bounds."""
 
+import shlex
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -8,7 +9,8 @@ from msgspec import Meta
 
 from models.errors import UserError
 
-SITE_VERSION = 1
+SITE_VERSION = 2
+"""Raised together with a new step in `models.config.migrations`."""
 
 Name = Annotated[str, Meta(pattern=r"^[a-z0-9][a-z0-9_-]{0,31}$", description="lower-case letters, digits, - and _")]
 
@@ -24,7 +26,9 @@ class CameraConfig(Section, frozen=True):
     kind: Annotated[Literal["video"], Meta(description="video: a file played in real time")]
     path: Annotated[str, Meta(min_length=1, description="the file, relative to the data folder")]
     rate_hz: Annotated[float, Meta(gt=0, le=240, description="frames a second of a file; every frame is shown")] = 30.0
-    offset_ms: Annotated[float, Meta(ge=-1000, le=1000, description="delay of this camera's shutter against the others'")] = 0.0
+    shutter_delay_ms: Annotated[
+        float, Meta(ge=-1000, le=1000, description="how much later than the others this camera exposes")
+    ] = 0.0
 
 
 class BusConfig(Section, frozen=True):
@@ -57,11 +61,21 @@ class FusionConfig(Section, frozen=True):
     live_hz: Annotated[float, Meta(ge=30, le=60, description="fused poses a second")] = 30.0
 
 
+class LogsConfig(Section, frozen=True):
+    """The log files, `logs` in the data folder. At most `max_files` times `max_file_mb` is kept; the oldest goes first."""
+
+    max_file_mb: Annotated[float, Meta(ge=0.1, le=1000, description="size in MB at which a new file is begun")] = 8.0
+    max_files: Annotated[int, Meta(ge=2, le=1000, description="files that are kept, the present one included")] = 8
+
+
 class SupervisorConfig(Section, frozen=True):
     """When a part that keeps failing is given up."""
 
     max_restarts: Annotated[int, Meta(ge=0, le=100, description="restarts of one process within the window")] = 5
     window_s: Annotated[float, Meta(gt=0, le=3600, description="length of the window")] = 60.0
+    spares: Annotated[
+        bool, Meta(description="keep a second fusion and page server ready to take over at once; costs their memory, no CPU")
+    ] = True
 
 
 class Site(Section, frozen=True):
@@ -76,20 +90,47 @@ class Site(Section, frozen=True):
     inference: InferenceConfig = InferenceConfig()
     fusion: FusionConfig = FusionConfig()
     supervisor: SupervisorConfig = SupervisorConfig()
+    logs: LogsConfig = LogsConfig()
+
+
+class _Versioned(msgspec.Struct):
+    version: Annotated[int, Meta(ge=1)]
+
+
+def site_version(data: bytes, origin: Path | str) -> int:
+    """The version of a site file, at most this KineBox's own.
+
+    Raises:
+        UserError: the file is not TOML or has no version, or a newer one.
+    """
+    try:
+        version = msgspec.toml.decode(data, type=_Versioned).version
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise UserError(f"site file {origin}: {error}; see docs/configuration.md for every key") from error
+    if version > SITE_VERSION:
+        raise UserError(
+            f"site file {origin}: version {version} is for a newer KineBox than this one, which reads {SITE_VERSION} "
+            f"(see 'kinebox version'); update KineBox, or put back the file's backup ({Path(origin).name}.bak-{SITE_VERSION}-...)"
+        )
+    return version
 
 
 def decode_site(data: bytes, origin: Path | str) -> Site:
     """Read a site file.
 
     Raises:
-        UserError: the file is not TOML, has an unknown key or a value out of bounds; the line names the key.
+        UserError: the file is not TOML, is of another version, has an unknown key or a value out of bounds; the line names the key.
     """
+    version = site_version(data, origin)
+    if version < SITE_VERSION:
+        raise UserError(
+            f"site file {origin}: version {version} is from an older KineBox; "
+            f"run 'kinebox config migrate {shlex.quote(str(origin))}', which keeps a backup"
+        )
     try:
         site: Site = msgspec.toml.decode(data, type=Site)
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+    except msgspec.DecodeError as error:
         raise UserError(f"site file {origin}: {error}; see docs/configuration.md for every key") from error
-    if site.version != SITE_VERSION:
-        raise UserError(f"site file {origin}: version {site.version} is not known to this KineBox, which reads {SITE_VERSION}")
     names = [camera.name for camera in site.cameras]
     doubled = sorted({name for name in names if names.count(name) > 1})
     if doubled:

@@ -5,6 +5,7 @@ import sys
 from collections.abc import Iterator
 from typing import Any
 
+from models.config.migrations import FIRST_VERSION, MIGRATIONS
 from models.config.site import schema
 
 _OPENING = """\
@@ -13,6 +14,9 @@ _OPENING = """\
 One TOML file says what a box has and how it shall work. Unknown keys and values out of bounds are refused, in one line that names
 the key. `kinebox config check FILE` checks a file and the calibration that it names, `kinebox config show FILE` prints it, as
 TOML, with every value that it leaves to its default. An example is `deploy/sites/footage/site.toml`.
+
+A file of an older version is refused by `kinebox run`. `kinebox config migrate FILE` brings it to the newest one: comments stay,
+and what it was is kept beside it as `FILE.bak-VERSION-TIME`. `--dry-run` only prints what would become different.
 
 This page is written from the schema by `python -m services.cli.configuration_docs`; a test keeps it current.
 """
@@ -33,7 +37,7 @@ def render(site_schema: dict[str, Any]) -> str:
     """The page for a JSON schema as `models.config.site.schema` gives it: the keys of the file, then a table a section."""
     definitions: dict[str, Any] = site_schema["$defs"]
     site = definitions[_name(site_schema)]
-    return "\n".join([_OPENING, *_section("Top level", site), *_nested(site, definitions)])
+    return "\n".join([_OPENING, *_section("Top level", site), *_nested(site, definitions), *_history()])
 
 
 def _nested(site: dict[str, Any], definitions: dict[str, Any]) -> Iterator[str]:
@@ -56,6 +60,13 @@ def _section(title: str, section: dict[str, Any]) -> Iterator[str]:
         cells = (f"`{key}`", field["description"], _value(field), default)
         yield f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
     yield ""
+
+
+def _history() -> Iterator[str]:
+    yield "## History of versions\n"
+    for migration in reversed(MIGRATIONS):
+        yield f"- **{migration.version}**: {migration.change}"
+    yield f"- **{FIRST_VERSION}**: the first.\n"
 
 
 def _value(field: dict[str, Any]) -> str:

@@ -12,6 +12,7 @@ from models.errors import UserError
 from services.cli.user_error import exit_with_line
 
 SiteFile = Annotated[Path, typer.Option("--site", help="The site file.", dir_okay=False)]
+SiteFileArgument = Annotated[Path, typer.Argument(metavar="FILE", help="The site file.", dir_okay=False)]
 DataFolder = Annotated[Path, typer.Option("--data", help="The folder with networks and footage.", file_okay=False)]
 
 app = typer.Typer(
@@ -20,7 +21,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-config_app = typer.Typer(help="Look at a site file.", no_args_is_help=True)
+config_app = typer.Typer(help="Check, show and migrate a site file.", no_args_is_help=True)
 app.add_typer(config_app, name="config")
 
 
@@ -81,22 +82,30 @@ def process(
 
 
 @config_app.command("check")
-def config_check(file: Annotated[Path, typer.Argument(help="The site file.", dir_okay=False)]) -> None:
+def config_check(file: SiteFileArgument) -> None:
     """Check a site file and its calibration."""
-    from services.support.site_files import read_site  # noqa: PLC0415
+    from services.cli import config  # noqa: PLC0415
 
-    site, rig = read_site(file)
-    typer.echo(f"{file} is good: '{site.name}' with {len(rig)} calibrated cameras ({', '.join(rig.names)})")
+    typer.echo(config.check(file), nl=False)
 
 
 @config_app.command("show")
-def config_show(file: Annotated[Path, typer.Argument(help="The site file.", dir_okay=False)]) -> None:
+def config_show(file: SiteFileArgument) -> None:
     """Print a site file, as a site file, with every value that it leaves to its default."""
-    from services.cli.site_toml import render  # noqa: PLC0415
-    from services.support.site_files import read_site  # noqa: PLC0415
+    from services.cli import config  # noqa: PLC0415
 
-    site, _ = read_site(file)
-    typer.echo(render(site), nl=False)
+    typer.echo(config.show(file), nl=False)
+
+
+@config_app.command("migrate")
+def config_migrate(
+    file: SiteFileArgument,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only print what would become different.", show_default=False)] = False,
+) -> None:
+    """Bring a site file of an older KineBox to the newest version; a backup is kept beside it."""
+    from services.cli import config  # noqa: PLC0415
+
+    typer.echo(config.migrate(file, dry_run), nl=False)
 
 
 @app.command()

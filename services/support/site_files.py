@@ -15,9 +15,9 @@ def read_site(path: Path) -> tuple[Site, Rig]:
     Raises:
         UserError: a file is missing or unreadable, a key or value is wrong, or a camera is in one file alone.
     """
-    site = decode_site(_read(path, "site file"), path)
+    site = decode_site(read_file(path, "site file"), path)
     calibration = path.parent / site.calibration
-    rig = decode_rig(_read(calibration, "calibration"), str(calibration))
+    rig = decode_rig(read_file(calibration, "calibration"), str(calibration))
     names = [camera.name for camera in site.cameras]
     try:
         chosen = rig.select(names)
@@ -32,7 +32,8 @@ def read_site(path: Path) -> tuple[Site, Rig]:
     return site, chosen
 
 
-def _read(path: Path, what: str) -> bytes:
+def read_file(path: Path, what: str) -> bytes:
+    """The bytes of a file that a person named; UserError, which calls it `what`, if it cannot be read."""
     try:
         return path.read_bytes()
     except FileNotFoundError as error:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from models.camera.rig import Rig
-from models.config.site import CameraConfig, Site, TabletConfig
+from models.config.site import SITE_VERSION, CameraConfig, Site, TabletConfig
 from models.messages import codec, topics
 from models.messages.health import CameraHealth, FusionHealth, Health, RecorderHealth
 from models.messages.motion import CameraUse, JointState, Motion
@@ -196,7 +196,7 @@ def _rig() -> Rig:
 def _site(port: int) -> Site:
     cameras = [CameraConfig(name=name, kind="video", path=f"{name}.mp4") for name in CAMERAS]
     return Site(
-        version=1,
+        version=SITE_VERSION,
         name="Gym of the village school",
         calibration="calibration.toml",
         cameras=cameras,

@@ -8,6 +8,7 @@ import threading
 from pathlib import Path
 from types import TracebackType
 
+from models.config.site import SITE_VERSION
 from models.messages import codec, topics
 from models.messages.health import Health
 from services.bus.zenoh_bus import open_client
@@ -42,7 +43,7 @@ def write_site(folder: Path, page_port: int, bus_port: int, more: str = "") -> P
     site = folder / "site.toml"
     cameras = "".join(f'[[cameras]]\nname = "{name}"\nkind = "video"\npath = "footage/{name}.avi"\n' for name in "ab")
     site.write_text(
-        f'version = 1\nname = "Test gym"\ncalibration = "rig.toml"\n{cameras}'
+        f'version = {SITE_VERSION}\nname = "Test gym"\ncalibration = "rig.toml"\n{cameras}'
         f'[bus]\nendpoint = "tcp/127.0.0.1:{bus_port}"\n[tablet]\nhost = "127.0.0.1"\nport = {page_port}\n{more}'
     )
     return site

@@ -10,7 +10,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from models.config.site import decode_site
+from models.config.site import SITE_VERSION, decode_site
 from tests.integration.box import ROOT, fake_parts, write_site
 from tests.integration.waiting import free_port, until
 
@@ -66,6 +66,24 @@ def test_a_bad_site_file_is_one_line_and_code_2(site: Path) -> None:
     assert result.stdout == ""
     assert result.stderr.count("\n") == 1
     assert "`inferense`" in result.stderr
+
+
+def test_an_old_site_file_is_refused_with_the_command_that_mends_it(site: Path) -> None:
+    old = site.read_text().replace(f"version = {SITE_VERSION}", "version = 1  # of last year")
+    site.write_text(old)
+    refused = kinebox("config", "check", str(site))
+    assert refused.returncode == 2
+    assert f"run 'kinebox config migrate {site}'" in refused.stderr
+    tried = kinebox("config", "migrate", "--dry-run", str(site))
+    assert f"-version = 1  # of last year\n+version = {SITE_VERSION}  # of last year\n" in tried.stdout
+    assert site.read_text() == old
+    done = kinebox("config", "migrate", str(site))
+    assert done.stdout.startswith(tried.stdout)
+    (backup,) = site.parent.glob("site.toml.bak-1-*")
+    assert done.stdout.endswith(f"{site} is migrated; what it was is in {backup}\n")
+    assert backup.read_text() == old
+    assert kinebox("config", "check", str(site)).returncode == 0
+    assert "nothing to do" in kinebox("config", "migrate", str(site)).stdout
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from edge.library import Library
 from edge.process import EdgeLoop, main, stage_clock
 from models.camera.pinhole import Camera
 from models.camera.rig import Rig
-from models.config.site import CameraConfig, Site
+from models.config.site import SITE_VERSION, CameraConfig, Site
 from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.control import PoseNetwork, ViewControl
@@ -49,7 +49,10 @@ def context_for(bus: MemoryBus, data: Path, path: str = "cam01.avi", camera: str
         name=f"edge-{camera}",
         camera=camera,
         site=Site(
-            version=1, name="test", calibration="rig.toml", cameras=[CameraConfig(name=n, kind="video", path=path) for n in NAMES]
+            version=SITE_VERSION,
+            name="test",
+            calibration="rig.toml",
+            cameras=[CameraConfig(name=n, kind="video", path=path) for n in NAMES],
         ),
         rig=Rig(tuple(replace(one, name=name) for name in NAMES)),
         data=data,

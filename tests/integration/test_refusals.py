@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from edge.check import NETWORKS
+from models.config.site import SITE_VERSION
 from tests.integration.box import CAMERA, ROOT, fake_parts, write_site
 from tests.integration.waiting import free_port
 from tests.small_video import write_video
@@ -136,9 +137,13 @@ FAULTS: dict[str, tuple[Callable[[House], object], str]] = {
         lambda house: _replace(house.site, "[tablet]\n", "[inference]\ncpu_target = 7.0\n[tablet]\n"),
         r"site file .*cpu_target.*see docs/configuration",
     ),
-    "the site is of another version": (
-        lambda house: _replace(house.site, "version = 1", "version = 99"),
-        r"site file .*version 99 is not known",
+    "the site is of a newer version": (
+        lambda house: _replace(house.site, f"version = {SITE_VERSION}", "version = 99"),
+        r"site file .*version 99 is for a newer KineBox .*'kinebox version'.*update KineBox, or put back .*site\.toml\.bak-",
+    ),
+    "the site is of an older version": (
+        lambda house: _replace(house.site, f"version = {SITE_VERSION}", "version = 1"),
+        r"site file .*version 1 is from an older KineBox; run 'kinebox config migrate .*site\.toml'",
     ),
     "the calibration is missing": (lambda house: house.rig.unlink(), r"calibration .*rig\.toml does not exist; correct"),
     "the calibration lacks a camera": (

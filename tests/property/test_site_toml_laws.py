@@ -4,7 +4,7 @@ import msgspec
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.config.site import CameraConfig, Site, TabletConfig, decode_site
+from models.config.site import SITE_VERSION, CameraConfig, Site, TabletConfig, decode_site
 from services.cli.site_toml import render
 
 # All that TOML can hold: halves of surrogate pairs are no characters.
@@ -15,11 +15,11 @@ CAMERAS = st.builds(
     kind=st.just("video"),
     path=TEXTS,
     rate_hz=st.floats(1e-9, 240),
-    offset_ms=st.floats(-1000, 1000),
+    shutter_delay_ms=st.floats(-1000, 1000),
 )
 SITES = st.builds(
     lambda name, calibration, first, second, host: Site(
-        version=1,
+        version=SITE_VERSION,
         name=name,
         calibration=calibration,
         cameras=[first, msgspec.structs.replace(second, name="b")],

@@ -4,7 +4,7 @@ import socket
 
 import pytest
 
-from models.config.site import BusConfig, CameraConfig, Site, TabletConfig
+from models.config.site import SITE_VERSION, BusConfig, CameraConfig, Site, TabletConfig
 from models.errors import UserError
 from services.supervisor.preflight import require_ports
 from tests.integration.waiting import free_port
@@ -12,7 +12,7 @@ from tests.integration.waiting import free_port
 
 def site(page_host: str, page_port: int, bus_port: int) -> Site:
     return Site(
-        version=1,
+        version=SITE_VERSION,
         name="Test gym",
         calibration="rig.toml",
         cameras=[CameraConfig(name=name, kind="video", path=f"{name}.avi") for name in "ab"],

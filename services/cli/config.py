@@ -1,0 +1,42 @@
+"""`kinebox config`: look at a site file and bring it to the newest version."""
+
+import datetime as dt
+import difflib
+from pathlib import Path
+
+from services.cli import site_toml
+from services.support.site_files import read_file, read_site
+from services.support.site_migration import MigratedText, migrate_file, migrated_text
+
+
+def check(file: Path) -> str:
+    """What there is to say of a good site file; UserError for one that is not."""
+    site, rig = read_site(file)
+    return f"{file} is good: '{site.name}' with {len(rig)} calibrated cameras ({', '.join(rig.names)})\n"
+
+
+def show(file: Path) -> str:
+    """The site file with every value that it leaves to its default."""
+    site, _ = read_site(file)
+    return site_toml.render(site)
+
+
+def migrate(file: Path, dry_run: bool) -> str:
+    """Migrate a site file, or only tell what would become different; what there is to say of it."""
+    if dry_run:
+        texts = migrated_text(read_file(file, "site file"), file)
+        return _difference(texts, file) or _nothing_to_do(file, texts)
+    texts, backup = migrate_file(file, dt.datetime.now(dt.UTC))
+    if backup is None:
+        return _nothing_to_do(file, texts)
+    return f"{_difference(texts, file)}{file} is migrated; what it was is in {backup}\n"
+
+
+def _difference(texts: MigratedText, file: Path) -> str:
+    old, new = (text.splitlines(keepends=True) for text in (texts.old, texts.new))
+    lines = difflib.unified_diff(old, new, f"{file} (version {texts.old_version})", f"{file} (migrated)")
+    return "".join(line if line.endswith("\n") else f"{line}\n" for line in lines)
+
+
+def _nothing_to_do(file: Path, texts: MigratedText) -> str:
+    return f"{file} is of version {texts.old_version}, the newest; nothing to do\n"
