@@ -4,7 +4,6 @@ import zlib
 from dataclasses import dataclass, fields
 
 from models.camera.rig import Rig, decode_rig
-from models.config.site import Site, decode_site
 
 FORMAT = 1
 """Version of the file's layout; a reader refuses one that is newer."""
@@ -29,7 +28,7 @@ class LessonHeader:
         kinebox: version of KineBox that recorded it.
         machine: processor and the versions that numerical results depend on.
         preset: fusion's configuration: a key of `services.fusion.config.PRESETS`.
-        site_toml: the site file, with every default written out.
+        site_toml: the site file, with every default written out; for people, since a later KineBox may know another schema.
         rig_toml: the calibration as fusion used it, to the last digit.
         started_ns: CLOCK_MONOTONIC when the lesson was begun.
         wall_minus_monotonic_ns: CLOCK_REALTIME less CLOCK_MONOTONIC at that moment.
@@ -50,10 +49,6 @@ class LessonHeader:
     def started_s(self) -> float:
         """Begin of the lesson, seconds since 1970 (UTC)."""
         return (self.started_ns + self.wall_minus_monotonic_ns) * 1e-9
-
-    def site(self) -> Site:
-        """The decoded site file; UserError if this KineBox cannot read it."""
-        return decode_site(self.site_toml.encode(), "of the lesson")
 
     def rig(self) -> Rig:
         """The decoded calibration; UserError if this KineBox cannot read it."""

@@ -51,18 +51,22 @@ class LessonSummary:
     """A whole lesson in figures.
 
     Attributes:
-        seconds: from the first entry to the last.
+        begin_ns, end_ns: CLOCK_MONOTONIC of the first and the last entry; the lesson's start if it has none.
         parts, segments, gaps: how many; the first segment begins without a gap.
         entries: how many, by kind.
-        end_ns: CLOCK_MONOTONIC of the last entry; the lesson's start if it has none.
     """
 
-    seconds: float
+    begin_ns: int
+    end_ns: int
     parts: int
     segments: int
     gaps: int
     entries: dict[str, int]
-    end_ns: int
+
+    @property
+    def seconds(self) -> float:
+        """From the first entry to the last, with the gaps."""
+        return (self.end_ns - self.begin_ns) * 1e-9
 
 
 class Lesson:
@@ -97,6 +101,11 @@ class Lesson:
     def summary(self) -> LessonSummary:
         """Read the whole file, and so check all of it; UserError as for `parts`."""
         return summarise(self.header, self.parts())
+
+    def span_ns(self) -> tuple[int, int]:
+        """CLOCK_MONOTONIC of the first and the last entry, having checked the whole file; UserError as for `parts`."""
+        summary = self.summary()
+        return summary.begin_ns, summary.end_ns
 
 
 class PartDecoder:
@@ -133,7 +142,7 @@ def summarise(header: LessonHeader, parts: Iterator[LessonPart]) -> LessonSummar
     """The figures of a lesson's parts."""
     count = segments = gaps = 0
     kinds: dict[str, int] = {}
-    first_ns, end_ns = None, header.started_ns
+    times: list[int] = []
     for part in parts:
         count += 1
         segments += part.begins_segment
@@ -141,9 +150,9 @@ def summarise(header: LessonHeader, parts: Iterator[LessonPart]) -> LessonSummar
         for item in part.entries:
             kinds[item.kind] = kinds.get(item.kind, 0) + 1
         if part.entries:
-            first_ns = part.entries[0].t_ns if first_ns is None else first_ns
-            end_ns = max(end_ns, part.entries[-1].t_ns)
-    return LessonSummary(0.0 if first_ns is None else (end_ns - first_ns) * 1e-9, count, segments, gaps, kinds, end_ns)
+            times = [*times[:1], part.entries[0].t_ns, part.entries[-1].t_ns]
+    times = times or [header.started_ns]
+    return LessonSummary(times[0], times[-1], count, segments, gaps, kinds)
 
 
 def open_lesson(path: Path) -> Lesson:
