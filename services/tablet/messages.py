@@ -8,7 +8,10 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
+from services.support.machine_troubles import MachineCode
+
 CameraState = Literal["starting", "ok", "slow", "lost"]
+ProcessState = Literal["ok", "degraded", "failed", "silent", "gone"]
 CameraReason = Literal[
     "none",
     "starting",  # not heard of yet, and the box has only just started
@@ -49,11 +52,25 @@ class ProcessStatus(_Model):
     """One process of the box, as it last described itself. `age_s` is the age of that description. Null is: not known."""
 
     name: str
-    state: Literal["ok", "degraded", "failed", "silent", "gone"]
+    state: ProcessState
     reason: str
     age_s: float
     cpu_cores: float | None
     rss_mb: float | None
+    restarts: Annotated[int | None, Field(description="times that it had to be started again since the box was started")]
+
+
+class MachineStatus(_Model):
+    """The machine under the box. Null is: not known."""
+
+    used_cores: float | None
+    granted_cores: float | None
+    memory_free_mb: float | None
+    disk_free_mb: Annotated[float | None, Field(description="room where lessons and logs are kept")]
+    temperature_c: float | None
+    clock_ms: Annotated[int, Field(description="the box's date and time, milliseconds since 1970 in UTC")]
+    clock_step_ms: Annotated[float | None, Field(description="how far that clock was set in the last minute")]
+    troubles: Annotated[list[MachineCode], Field(description="what is wrong, worst first")]
 
 
 class Latency(_Model):
@@ -85,6 +102,7 @@ class Status(_Model):
     """The room as a whole, about twice a second."""
 
     type: Literal["status"] = "status"
+    version: Annotated[str | None, Field(description="of the KineBox that runs")]
     room: Annotated[str, Field(description="the site's name")]
     box_time_us: Annotated[int, Field(description="CLOCK_MONOTONIC of the box")]
     epoch: int | None
@@ -96,6 +114,7 @@ class Status(_Model):
     cpu_load: Annotated[float | None, Field(description="share of the granted CPU that is in use, 0 to 1")]
     recording: Recording | None
     replay: Replay | None
+    machine: MachineStatus | None
     cameras: list[CameraStatus]
     processes: list[ProcessStatus]
     clients: int

@@ -5,13 +5,13 @@ Reads no clock: every method is told the time, so that each state can be tested 
 
 import math
 from collections import deque
-from typing import Literal
 
-from models.messages.health import Health
+from models.messages.health import Health, SupervisorHealth
 from models.messages.motion import JointState, Motion
 from models.process import EDGE, RECORDER, REPLAY, ROUTER, Playback, process_name
+from services.support.machine_troubles import machine_troubles
 from services.tablet.camera_state import SILENT_AFTER_NS, HeardHealth, Presence, camera_status, known
-from services.tablet.messages import CameraStatus, Latency, ProcessStatus, Recording, Replay, Status
+from services.tablet.messages import CameraStatus, Latency, MachineStatus, ProcessState, ProcessStatus, Recording, Replay, Status
 
 WINDOW_NS = 3_000_000_000
 """Rates and latencies are those of the last so many nanoseconds."""
@@ -105,6 +105,7 @@ class RoomState:
         fusion_health, motion, used = self._said(ROUTER, now_ns), self._motion, self._used(now_ns)
         fusion = fusion_health.fusion if fusion_health else None
         return Status(
+            version=supervisor.version if (supervisor := self._supervisor()) else None,
             room=self._room,
             box_time_us=now_ns // 1000,
             epoch=motion.epoch if motion else None,
@@ -114,6 +115,7 @@ class RoomState:
             latency=self._meter.latency(now_ns),
             pupil=fusion.pupil if fusion else "unknown",
             cpu_load=known(fusion.cpu_load) if fusion else None,
+            machine=self._machine(now_ns),
             recording=self._recording(now_ns),
             replay=self._replay(now_ns),
             cameras=[self._camera(name, name in used, now_ns) for name in self._cameras],
@@ -168,7 +170,7 @@ class RoomState:
 
     def _process(self, heard: HeardHealth, now_ns: int) -> ProcessStatus:
         health, age_ns = heard.health, now_ns - heard.arrived_ns
-        state: Literal["ok", "degraded", "failed", "silent", "gone"] = health.state
+        state: ProcessState = health.state
         if self._gone(health.process):
             state = "gone"
         elif age_ns > SILENT_AFTER_NS:
@@ -180,7 +182,40 @@ class RoomState:
             age_s=age_ns * 1e-9,
             cpu_cores=known(health.cpu_cores),
             rss_mb=known(health.rss_mb),
+            restarts=self._restarts(health.process),
         )
+
+    def _supervisor(self) -> SupervisorHealth | None:
+        # However old: which version runs, and what was started again, does not become untrue by silence.
+        heard = self._health.get("supervisor")
+        return heard.health.supervisor if heard else None
+
+    def _restarts(self, process: str) -> int | None:
+        supervisor = self._supervisor()
+        if supervisor is None:
+            return None
+        return next((restarts.count for restarts in supervisor.restarts if restarts.process == process), 0)
+
+    def _machine(self, now_ns: int) -> MachineStatus | None:
+        health = self._said("supervisor", now_ns)
+        machine = health.machine if health else None
+        if machine is None:
+            return None
+        return MachineStatus(
+            used_cores=known(machine.used_cores),
+            granted_cores=known(machine.granted_cores),
+            memory_free_mb=known(machine.memory_free_mb),
+            disk_free_mb=known(machine.disk_free_mb),
+            temperature_c=None if machine.temperature_c is None else known(machine.temperature_c),
+            clock_ms=(machine.wall_minus_monotonic_ns + now_ns) // 1_000_000,
+            clock_step_ms=known(machine.clock_step_ms),
+            troubles=[trouble.code for trouble in machine_troubles(machine)],
+        )
+
+    def healths(self, now_ns: int) -> list[Health]:
+        """What the processes that are heard say of themselves, by name."""
+        said = (self._said(process, now_ns) for process in sorted(self._health))
+        return [health for health in said if health is not None]
 
 
 def _nearest_rank(ordered: list[float], share: float) -> float:

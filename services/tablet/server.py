@@ -12,7 +12,7 @@ from pydantic.json_schema import models_json_schema
 
 from models.messages.health import Health
 from models.messages.motion import Motion
-from services.tablet import motion_frame
+from services.tablet import metrics, motion_frame
 from services.tablet.audience import Audience, Session
 from services.tablet.messages import Ack, Ping, Pong, Status
 from services.tablet.room_state import RoomState
@@ -64,6 +64,10 @@ class TabletServer:
         """The room now."""
         return self.room.status(self._clock_ns(), len(self.audience))
 
+    def healths(self) -> list[Health]:
+        """What each process that is heard says of itself."""
+        return self.room.healths(self._clock_ns())
+
     def session(self, socket: WebSocket) -> Session:
         """A session for a client whose malformed messages are counted here."""
         return Session(socket, self._clock_ns, self._reject_client_message)
@@ -108,6 +112,11 @@ def create_app(server: TabletServer, page: Path | None) -> FastAPI:
     async def read_status() -> Status:
         """The room now: cameras, rates, latency, failures."""
         return server.status()
+
+    @app.get("/metrics", include_in_schema=False)
+    async def read_metrics() -> Response:
+        """The room in Prometheus's text format, see docs/metrics.md."""
+        return Response(metrics.render(server), media_type=metrics.CONTENT_TYPE)
 
     @app.websocket("/ws")
     async def watch(socket: WebSocket) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from models.camera.rig import Rig
 from models.config.site import SITE_VERSION, CameraConfig, Site, TabletConfig
 from models.messages import codec, topics
-from models.messages.health import CameraHealth, FusionHealth, Health, RecorderHealth
+from models.messages.health import CameraHealth, FusionHealth, Health, MachineHealth, RecorderHealth, SupervisorHealth
 from models.messages.motion import CameraUse, JointState, Motion
 from models.process import Bus, ProcessContext, Resources
 from models.skeleton import coco
@@ -21,6 +21,7 @@ from tests.synthetic.person import Person
 
 CAMERAS = ("cam0", "cam1", "cam2", "cam3")
 LIVE_HZ = 30.0
+MACHINE = MachineHealth(2.9, 4.0, 3100.0, 41_000.0, 63.0, 1_700_000_000_000_000_000, 0.0)
 
 
 def free_port() -> int:
@@ -42,6 +43,7 @@ class Scene:
         lost: cameras whose processes are gone.
         fresh_hz: inferences a second of every camera.
         pupil: what fusion says about the pupil.
+        machine: what the supervisor measured of the machine.
         recorded_s: length of the lesson that is being recorded; None while none is.
     """
 
@@ -51,6 +53,7 @@ class Scene:
     lost: frozenset[str] = frozenset()
     fresh_hz: float = 14.6
     pupil: str = "found"
+    machine: MachineHealth = MACHINE
     recorded_s: float | None = None
 
 
@@ -147,6 +150,9 @@ class Room:
         for index, (camera, bus) in enumerate(self._edges.items()):
             rates = CameraHealth(camera, 30.0, scene.fresh_hz - 0.3 * index, 15.0, 12 + 7 * index, 21.0 + 3 * index, "thunder", {})
             self._say(bus, Health(f"edge-{camera}", 100 + index, now_ns, "ok", "", 0.36, 214.0, camera=rates))
+        supervisor = SupervisorHealth("0.1.0", now_ns, ())
+        said = Health("supervisor", 98, now_ns, "ok", "", 0.01, 30.0, machine=scene.machine, supervisor=supervisor)
+        self._say(self._fusion, said)
         fusion = FusionHealth(29.8, 4.2, 0.83, 0, {}, "found" if scene.pupil == "found" else "searching")
         lesson = "" if scene.recorded_s is None else "2026-11-22-7b"
         recorder = RecorderHealth(lesson, "7b, throwing", scene.recorded_s or 0.0, 2.5, 0)

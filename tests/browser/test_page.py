@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import cv2
+import msgspec
 import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, expect
@@ -11,7 +12,7 @@ from models.arrays import Float
 from models.messages.motion import JointState
 from models.skeleton import coco
 from services.tablet import process
-from tests.browser.room import CAMERAS, Room, with_scene
+from tests.browser.room import CAMERAS, MACHINE, Room, with_scene
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -268,3 +269,20 @@ def test_a_browser_without_3d_says_so(page: Page, room: Room) -> None:
     page.goto(room.page)
     Shown(page).wait_for_phase("unable")
     expect(page.get_by_text("This tablet cannot draw in 3D")).to_be_visible()
+
+
+def test_a_teacher_is_told_of_the_machine_only_when_it_matters_and_the_technician_always(page: Page, room: Room) -> None:
+    with_scene(room, speed=0.0, machine=msgspec.structs.replace(MACHINE, clock_step_ms=3000.0, disk_free_mb=1536.0))
+    open_live(page, room)
+    page.get_by_role("button", name="Details").click()
+    details = page.locator("#details")
+    for words in ("The clock of the box was set", "The disk is nearly full", "63 °C", "3.0 GB", "1.5 GB", "0.1.0"):
+        expect(details.get_by_text(words, exact=True)).to_be_visible()
+    message = page.locator(".messages")
+    expect(message.get_by_text("disk")).to_have_count(0)
+    with_scene(room, machine=msgspec.structs.replace(MACHINE, disk_free_mb=20.0))
+    expect(message.get_by_text("The disk is full")).to_be_visible()
+    with_scene(room, machine=msgspec.structs.replace(MACHINE, temperature_c=97.0))
+    expect(message.get_by_text("The box is too hot")).to_be_visible()
+    with_scene(room, machine=MACHINE)
+    expect(message.get_by_text("The box is too hot")).to_have_count(0)

@@ -12,6 +12,7 @@ from typing import Any
 
 import httpx
 import pytest
+from prometheus_client.parser import text_string_to_metric_families
 from websockets.exceptions import ConnectionClosed, ConnectionClosedError, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
@@ -253,3 +254,14 @@ def test_a_page_that_is_not_built_stops_the_start(tmp_path: Path, monkeypatch: p
 def test_the_description_for_the_page_is_current() -> None:
     written = openapi.FILE.read_text(encoding="utf-8")
     assert written == openapi.description(), "run `python -m services.tablet.openapi`, then `npm run types` in services/tablet/web"
+
+
+def test_prometheus_reads_the_room_over_the_pages_port(room: Room) -> None:
+    until(room, "cpu_load", 0.0)
+    answer = httpx.get(room.page + "metrics")
+    assert answer.headers["content-type"].startswith("text/plain; version=0.0.4")
+    read = {metric.name: metric for metric in text_string_to_metric_families(answer.text)}
+    states = {(s.labels["camera"], s.labels["state"]): s.value for s in read["kinebox_camera_state"].samples}
+    assert {camera for camera, _ in states} == set(CAMERAS)
+    assert read["kinebox_live_motion_hertz"].samples[0].value > 0
+    assert read["kinebox_machine_temperature_celsius"].samples[0].value == 63.0

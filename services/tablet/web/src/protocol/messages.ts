@@ -5,6 +5,8 @@ import type { components } from './openapi';
 export type Status = components['schemas']['Status'];
 export type CameraStatus = components['schemas']['CameraStatus'];
 export type ProcessStatus = components['schemas']['ProcessStatus'];
+export type MachineStatus = components['schemas']['MachineStatus'];
+export type MachineCode = MachineStatus['troubles'][number];
 export type Pong = components['schemas']['Pong'];
 export type Ping = components['schemas']['Ping'];
 export type Ack = components['schemas']['Ack'];

@@ -85,6 +85,40 @@ export interface components {
             p95_ms: number;
         };
         /**
+         * MachineStatus
+         * @description The machine under the box. Null is: not known.
+         */
+        MachineStatus: {
+            /** Used Cores */
+            used_cores: number | null;
+            /** Granted Cores */
+            granted_cores: number | null;
+            /** Memory Free Mb */
+            memory_free_mb: number | null;
+            /**
+             * Disk Free Mb
+             * @description room where lessons and logs are kept
+             */
+            disk_free_mb: number | null;
+            /** Temperature C */
+            temperature_c: number | null;
+            /**
+             * Clock Ms
+             * @description the box's date and time, milliseconds since 1970 in UTC
+             */
+            clock_ms: number;
+            /**
+             * Clock Step Ms
+             * @description how far that clock was set in the last minute
+             */
+            clock_step_ms: number | null;
+            /**
+             * Troubles
+             * @description what is wrong, worst first
+             */
+            troubles: ("disk_full" | "disk_low" | "memory_low" | "hot" | "throttled" | "clock_set")[];
+        };
+        /**
          * ProcessStatus
          * @description One process of the box, as it last described itself. `age_s` is the age of that description. Null is: not known.
          */
@@ -104,6 +138,11 @@ export interface components {
             cpu_cores: number | null;
             /** Rss Mb */
             rss_mb: number | null;
+            /**
+             * Restarts
+             * @description times that it had to be started again since the box was started
+             */
+            restarts: number | null;
         };
         /**
          * Recording
@@ -160,6 +199,11 @@ export interface components {
              */
             type: "status";
             /**
+             * Version
+             * @description of the KineBox that runs
+             */
+            version: string | null;
+            /**
              * Room
              * @description the site's name
              */
@@ -199,6 +243,7 @@ export interface components {
             cpu_load: number | null;
             recording: components["schemas"]["Recording"] | null;
             replay: components["schemas"]["Replay"] | null;
+            machine: components["schemas"]["MachineStatus"] | null;
             /** Cameras */
             cameras: components["schemas"]["CameraStatus"][];
             /** Processes */

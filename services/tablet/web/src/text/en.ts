@@ -1,7 +1,7 @@
 /** Every word on the page. Another language is another file of this shape. */
 
 import type { Phase } from '../connection/phase';
-import type { CameraStatus, ProcessStatus } from '../protocol/messages';
+import type { CameraStatus, MachineCode, ProcessStatus } from '../protocol/messages';
 
 const COUNTS = ['no camera', 'one', 'two', 'three', 'four', 'five', 'six', 'seven', 'eight'];
 
@@ -47,6 +47,16 @@ const phases: Record<Phase, { pill: string; title: string; words: string }> = {
     words: 'Its browser has no WebGL 2. Update it, or use another tablet.',
   },
   live: { pill: 'Live', title: '', words: '' },
+};
+
+/** What is wrong with the machine: in the technician's list, and if it matters for the lesson, over the figure. */
+const troubles: Record<MachineCode, string> = {
+  disk_full: 'The disk is full – lessons cannot be recorded',
+  disk_low: 'The disk is nearly full',
+  memory_low: 'The box has hardly any memory left – it may stop',
+  hot: 'The box is too hot – it may become slow',
+  throttled: 'The box is too hot or has too little power – it is slow',
+  clock_set: 'The clock of the box was set',
 };
 
 /** The networks' names mean nothing to a teacher; the technician reads them in the details. */
@@ -107,6 +117,8 @@ export const text = {
     },
   },
 
+  troubles,
+
   readings: {
     title: 'Measurements',
     rate: 'Figures a second',
@@ -140,6 +152,7 @@ export const text = {
       state: 'State',
       processor: 'Cores',
       memory: 'MB',
+      restarts: 'Restarts',
     },
     processStates: {
       ok: 'ok',
@@ -156,6 +169,18 @@ export const text = {
     dropped: 'Dropped as too late',
     unreadable: 'Could not be read',
     processor: 'Processor in use',
+    temperature: 'Temperature of the processor',
+    memory: 'Memory free',
+    disk: 'Disk free',
+    clock: 'Date and time of the box',
+    version: 'Version',
+    degrees: (celsius: number | null): string => (celsius === null ? '–' : `${celsius.toFixed(0)} °C`),
+    size: (mb: number | null): string => {
+      if (mb === null) return '–';
+      return mb < 1024 ? `${mb.toFixed(0)} MB` : `${(mb / 1024).toFixed(1)} GB`;
+    },
+    moment: (ms: number | null): string =>
+      ms === null ? '–' : new Date(ms).toLocaleString('en-GB', { dateStyle: 'medium', timeStyle: 'medium' }),
     epoch: 'Footage repeated',
     clients: 'Tablets',
     rejected: 'Rejected from bus / tablets',
