@@ -112,6 +112,7 @@ class ProcessContext:
         stop: set when the process shall end.
         resources: measures this process; every process reports the result in its health once a second.
         playback: what is played in the place of a room; None in a room.
+        beat: called in every round of the process's loop, tells that it goes round. A process that calls it is missed sooner.
     """
 
     name: str
@@ -124,3 +125,4 @@ class ProcessContext:
     stop: threading.Event
     resources: Callable[[], Resources]
     playback: Playback | None = None
+    beat: Callable[[], None] = lambda: None

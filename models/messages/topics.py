@@ -38,10 +38,16 @@ def health(process: str) -> str:
     return f"{ROOM}/health/{process}"
 
 
+def beat(process: str) -> str:
+    """processes whose silence is noticed at once -> supervisor; the payload is the process's id in decimal digits"""
+    return f"{ROOM}/beat/{process}"
+
+
 def alive(process: str) -> str:
     """liveliness token of a process"""
     return f"{ROOM}/alive/{process}"
 
 
 ALL_HEALTH = f"{ROOM}/health/*"
+ALL_BEATS = f"{ROOM}/beat/*"
 ALL_ALIVE = f"{ROOM}/alive/*"

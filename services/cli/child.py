@@ -23,10 +23,11 @@ def main() -> None:
     parser.add_argument("--camera")
     parser.add_argument("--start-ns", type=int)
     parser.add_argument("--parent", type=int, required=True)
+    parser.add_argument("--spare", action="store_true")
     arguments = parser.parse_args()
     if not end_with_parent(arguments.parent):
         return
-    order = ProcessOrder(arguments.entry, arguments.site, arguments.data, arguments.camera, arguments.start_ns)
+    order = ProcessOrder(arguments.entry, arguments.site, arguments.data, arguments.camera, arguments.start_ns, arguments.spare)
     logs.configure(order.name)
     try:
         run_process(order)

@@ -5,6 +5,7 @@ callable `check(site, rig, data)` that raises `UserError` if its part could not 
 process of one name, the first on the import path is taken.
 """
 
+import sys
 from collections.abc import Callable
 from importlib.metadata import EntryPoint, entry_points
 from typing import cast
@@ -33,8 +34,12 @@ def find_process(name: str) -> EntryPoint:
 
 
 def load_process(entry: EntryPoint) -> Process:
-    """Import a process."""
-    return cast(Process, entry.load())
+    """Import a process and get it ready, by the function `prepare` of its module if that has one."""
+    process = cast(Process, entry.load())
+    prepare = getattr(sys.modules[process.__module__], "prepare", None)
+    if prepare is not None:
+        prepare()
+    return process
 
 
 def load_checks() -> list[Check]:

@@ -1,5 +1,6 @@
 """Run one process of the box: read the site, join the bus, and hand over until told to stop."""
 
+import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,6 +9,7 @@ from models.errors import UserError
 from models.process import EDGE, ROUTER, Bus, ProcessContext, process_name
 from services.cli.parts import find_process, load_process
 from services.support.health import ResourceMeter
+from services.support.heartbeat import Heartbeat
 from services.support.signals import stop_on_signals
 from services.support.site_files import read_site
 
@@ -16,7 +18,8 @@ from services.support.site_files import read_site
 class ProcessOrder:
     """What to run: the process's entry point, and for an edge process its camera.
 
-    `start_ns` is shared by all processes of one run; None is now.
+    `start_ns` is shared by all processes of one run; None is now. A `spare` gets everything ready, then waits for a line on its
+    standard input, and ends without having joined the bus if that is closed.
     """
 
     entry: str
@@ -24,6 +27,7 @@ class ProcessOrder:
     data: Path
     camera: str | None = None
     start_ns: int | None = None
+    spare: bool = False
 
     @property
     def name(self) -> str:
@@ -44,13 +48,15 @@ def run_process(order: ProcessOrder) -> None:
     from services.bus.zenoh_bus import open_client, open_router  # noqa: PLC0415 - a wrong site file shall not wait for it
 
     bus: Bus | None
-    if order.entry == ROUTER:
+    if order.entry == ROUTER and not order.spare:
         # The router first, because everybody waits for it.
         bus = open_router(site.bus.endpoint)
         main = load_process(entry)
     else:
         main = load_process(entry)
-        bus = open_client(site.bus.endpoint, stop)
+        if order.spare and not sys.stdin.buffer.readline():
+            return
+        bus = open_router(site.bus.endpoint) if order.entry == ROUTER else open_client(site.bus.endpoint, stop)
     if bus is None:
         return
     context = ProcessContext(
@@ -63,6 +69,7 @@ def run_process(order: ProcessOrder) -> None:
         bus=bus,
         stop=stop,
         resources=ResourceMeter(),
+        beat=Heartbeat(order.name, bus),
     )
     try:
         main(context)

@@ -87,6 +87,11 @@ class GovernorState:
     cost: InferenceCost = field(default_factory=InferenceCost)
 
     @property
+    def started(self) -> bool:
+        """Whether it has decided once."""
+        return self.started_ns is not None
+
+    @property
     def current(self) -> Level:
         """The rung in force."""
         return LADDER[self.level]
@@ -103,7 +108,7 @@ def step(state: GovernorState, load: Load, t_ns: int, max_rate_hz: float, cpu_ta
         cpu_target: share of `granted_cores` that may be filled.
     """
     if state.started_ns is None:
-        state = replace(state, started_ns=t_ns)
+        state = replace(state, started_ns=t_ns, level=_found_in_force(load.cameras))
     best = next(index for index, level in enumerate(LADDER) if level.rate_hz <= max_rate_hz)
     if state.level < best:
         return _move(state, best, t_ns)
@@ -112,6 +117,13 @@ def step(state: GovernorState, load: Load, t_ns: int, max_rate_hz: float, cpu_ta
     if not load.cameras or settled_s < _SETTLING_S or started_s < _STARTING_S:
         return state
     return _reconsider(replace(state, cost=state.cost.learn(load.cameras)), load, t_ns, best, cpu_target)
+
+
+def _found_in_force(cameras: Sequence[CameraHealth]) -> int:
+    """The rung of most cameras: that of the fusion before this one, which was learnt on this box, or without one `START`."""
+    rungs = {(level.rate_hz, level.network): index for index, level in enumerate(LADDER)}
+    found = [rungs[key] for camera in cameras if (key := (camera.target_hz, camera.network)) in rungs]
+    return max(found, key=lambda rung: (found.count(rung), rung), default=START)
 
 
 def turn_offset_ns(position: int, cameras: int, rate_hz: float) -> int:

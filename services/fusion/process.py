@@ -34,9 +34,13 @@ _LATE_AT_SEAM = 2
 log = structlog.get_logger()
 
 
+def prepare() -> None:
+    """Have every kernel ready, before anybody waits for a figure."""
+    warm_up()
+
+
 def main(context: ProcessContext) -> None:
     """Serve until told to stop."""
-    warm_up()
     FusionLoop(context, CpuMeter()).run()
 
 
@@ -75,7 +79,8 @@ class FusionLoop:
         self._cameras: dict[str, tuple[int, CameraHealth]] = {}
         self._controls = 0
         self._reporter = HealthReporter(context.name, context.bus, context.resources)
-        self._second = _Second(time.monotonic_ns())
+        self._began_ns = time.monotonic_ns()
+        self._second = _Second(self._began_ns)
 
     def run(self) -> None:
         """Take observations as they come and tick at the live rate; ticks that were missed are not made up for."""
@@ -86,6 +91,7 @@ class FusionLoop:
         ticks = 0
         try:
             while not self._context.stop.is_set():
+                self._context.beat()
                 delivery = subscription.receive(max((tick_ns - time.monotonic_ns()) * 1e-9, 0.0))
                 if delivery is not None:
                     self._receive(delivery)
@@ -93,7 +99,8 @@ class FusionLoop:
                 if now_ns < tick_ns:
                     continue
                 self._step(Tick(tick_ns))
-                if ticks % CONTROL_EVERY_TICKS == 0:
+                # A first plan would be made up: cameras that run already go on with their last one meanwhile.
+                if self._governor.started and ticks % CONTROL_EVERY_TICKS == 0:
                     self._control(now_ns)
                 if (part := self._log.part(now_ns)) is not None:
                     self._bus.publish(topics.fusion_log(), codec.encode(part))
@@ -178,7 +185,8 @@ class FusionLoop:
         self._second = _Second(now_ns, ignored_before=dict(self._state.ignored))
         alive = {name: camera for name, (t_ns, camera) in self._cameras.items() if now_ns - t_ns < CAMERA_SILENT_NS}
         used_cores = self._cpu.used_cores()
-        self._govern(Load(self._cpu.granted_cores, used_cores, tuple(alive.values())), now_ns)
+        if alive or self._governor.started or now_ns - self._began_ns > CAMERA_SILENT_NS:
+            self._govern(Load(self._cpu.granted_cores, used_cores, tuple(alive.values())), now_ns)
         reason = _trouble([name for name in self._names if name not in alive], ignored, second.rejected)
         fusion = FusionHealth(
             live_hz=second.live / seconds,

@@ -7,6 +7,7 @@ from models.messages import codec, topics
 from models.messages.health import Health, MachineHealth, SupervisorHealth
 from models.process import Bus, Subscription
 from services.support.health import HealthReporter, ResourceMeter
+from services.support.heartbeat import beating_pid
 
 NAME = "supervisor"
 _KEEP = 4
@@ -24,6 +25,7 @@ class BusLink:
         self._stop = threading.Event()
         self._bus: Bus | None = None
         self._subscription: Subscription | None = None
+        self._beats: Subscription | None = None
         self._reporter: HealthReporter | None = None
         self._opener = threading.Thread(target=self._open, name="bus", daemon=True)
         self._opener.start()
@@ -37,6 +39,15 @@ class BusLink:
             except codec.CodecError:
                 continue  # Who speaks unintelligibly is silent, and treated as such.
         return messages
+
+    def beats(self) -> list[tuple[str, int]]:
+        """The processes, with their ids, whose loops have said since the last call that they go round."""
+        found: list[tuple[str, int]] = []
+        while self._beats is not None and (delivery := self._beats.receive(0.0)) is not None:
+            pid = beating_pid(delivery.payload)
+            if pid is not None:
+                found.append((delivery.topic.rsplit("/", 1)[-1], pid))
+        return found
 
     def say(
         self, fault: str, trouble: str, failed: dict[str, str], machine: MachineHealth | None, supervisor: SupervisorHealth
@@ -73,6 +84,7 @@ class BusLink:
         if bus is None:
             return
         self._subscription = bus.subscribe(topics.ALL_HEALTH, keep=_KEEP)
+        self._beats = bus.subscribe(topics.ALL_BEATS, keep=1)
         bus.declare_alive(topics.alive(NAME))
         self._reporter = HealthReporter(NAME, bus, ResourceMeter())
         self._bus = bus

@@ -1,5 +1,6 @@
 """One process of the box as the supervisor holds it: started, read from, ended."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -36,10 +37,11 @@ class ChildSpec:
         """How far the process stands back when the CPU is short."""
         return 0 if self.camera is None else EDGE_NICENESS
 
-    def command(self, site: Path, data: Path, start_ns: int) -> list[str]:
-        """The command line of the process; it ends with the process that calls this."""
+    def command(self, site: Path, data: Path, start_ns: int, *, spare: bool = False) -> list[str]:
+        """The command line of the process; it ends with the process that calls this. A `spare` waits for `Child.begin`."""
         words = [sys.executable, "-P", "-m", _MODULE, self.entry, "--site", str(site), "--data", str(data)]
         words += ["--start-ns", str(start_ns), "--parent", str(os.getpid())]
+        words += ["--spare"] if spare else []
         return words if self.camera is None else [*words, "--camera", self.camera]
 
 
@@ -58,12 +60,12 @@ class Child:
     It must be made on the main thread: the kernel ends it together with the thread that started it.
     """
 
-    def __init__(self, command: list[str], environment: Mapping[str, str], niceness: int = 0) -> None:
+    def __init__(self, command: list[str], environment: Mapping[str, str], niceness: int = 0, *, waits: bool = False) -> None:
         # A process group of its own, so that Ctrl-C at a terminal reaches the supervisor alone and the end is orderly.
         self._process = subprocess.Popen(  # noqa: S603 - our own interpreter and module
             command,
             env=dict(environment),
-            stdin=subprocess.DEVNULL,
+            stdin=subprocess.PIPE if waits else subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             process_group=0,
@@ -109,6 +111,13 @@ class Child:
                 self.user_error = line.removeprefix(USER_ERROR_PREFIX)
         return lines
 
+    def begin(self) -> None:
+        """Have a process that waits take up its post."""
+        if self._process.stdin is not None:
+            with contextlib.suppress(BrokenPipeError):  # It has just ended, which is seen as of any other.
+                self._process.stdin.write(b"\n")
+                self._process.stdin.close()
+
     def ask_to_end(self) -> None:
         """Send SIGTERM."""
         self._signal(signal.SIGTERM)
@@ -123,6 +132,9 @@ class Child:
 
     def close(self) -> None:
         """Let go of a process that has ended."""
+        if self._process.stdin is not None:
+            with contextlib.suppress(BrokenPipeError):
+                self._process.stdin.close()
         self._output.close()
         os.close(self._exit_fd)
 

@@ -1,18 +1,20 @@
 """Which processes hang: they run, but nothing has been heard of them for too long. Pure: times come in, names go out.
 
-Health is what is listened for, since a token of liveliness is held by the network's threads even when the loop of a process
-hangs. Before the first health message of its life a process has much more time, because starting up may take a while. All health
-comes through the router's process, so while that is silent nobody else can be judged, nor for a while after it is back.
+Health and heartbeats are what is listened for, since a token of liveliness is held by the network's threads even when the loop of a
+process hangs. Before the first health message of its life a process has much more time, because starting up may take a while. All
+is heard through the router's process, so while that is silent nobody else can be judged, nor for a while after it is back.
 """
 
 from dataclasses import dataclass, field
 
 LIMIT_S = 3.0
 """Health comes once a second; whoever misses three has hung."""
+BEAT_LIMIT_S = 1.0
+"""Beats come five times a second from those who beat at all; five missed in a row are no delay of a busy CPU."""
 START_LIMIT_S = 120.0
 """Who was never heard has hung after this long; a box without compiled kernels takes a minute to start."""
-ROUTER_GAP_S = 1.5
-"""A router that is silent for longer than this may be what keeps the others silent."""
+ROUTER_GAP_SHARE = 0.5
+"""A router that is silent for longer than this share of its limit may be what keeps the others silent."""
 
 
 @dataclass
@@ -22,6 +24,7 @@ class Silence:
     router: str
     _started_s: dict[str, float] = field(default_factory=dict)
     _heard_s: dict[str, float] = field(default_factory=dict)
+    _beating: set[str] = field(default_factory=set)
     _router_back_s: float = float("-inf")
 
     def start(self, name: str, now_s: float) -> None:
@@ -33,12 +36,18 @@ class Silence:
         """A process ended, or it was decided that it shall."""
         self._started_s.pop(name, None)
         self._heard_s.pop(name, None)
+        self._beating.discard(name)
 
     def hear(self, name: str, now_s: float) -> None:
         """A health message of a process arrived."""
-        if name == self.router and now_s - self._heard_s.get(name, float("-inf")) > ROUTER_GAP_S:
+        if name == self.router and now_s - self._heard_s.get(name, float("-inf")) > self._router_gap_s():
             self._router_back_s = now_s
         self._heard_s[name] = now_s
+
+    def beat(self, name: str, now_s: float) -> None:
+        """A heartbeat of a process arrived: from now on it is expected to beat."""
+        self._beating.add(name)
+        self.hear(name, now_s)
 
     def restart_clocks(self, now_s: float) -> None:
         """The listener itself was held up: nobody can be blamed for the time until now."""
@@ -51,17 +60,24 @@ class Silence:
         router_heard_s = self._heard_s.get(self.router)
         if router_heard_s is None:
             return [self.router] if self._never_came(self.router, now_s) else []
-        if now_s - router_heard_s > LIMIT_S:
+        if now_s - router_heard_s > self._limit_s(self.router):
             return [self.router]
-        if now_s - router_heard_s > ROUTER_GAP_S:
+        if now_s - router_heard_s > self._router_gap_s():
             return []
         return [name for name in self._started_s if name != self.router and self._silent(name, now_s)]
+
+    def _limit_s(self, name: str) -> float:
+        return BEAT_LIMIT_S if name in self._beating else LIMIT_S
+
+    def _router_gap_s(self) -> float:
+        return ROUTER_GAP_SHARE * self._limit_s(self.router)
 
     def _silent(self, name: str, now_s: float) -> bool:
         heard_s = self._heard_s.get(name)
         if heard_s is None:
             return self._never_came(name, now_s)
-        return now_s - max(heard_s, self._router_back_s) > LIMIT_S
+        # After the router's return everybody has the time of a health message, since links are mended one after the other.
+        return now_s - heard_s > self._limit_s(name) and now_s - self._router_back_s > LIMIT_S
 
     def _never_came(self, name: str, now_s: float) -> bool:
         return name in self._started_s and now_s - self._started_s[name] > START_LIMIT_S

@@ -23,13 +23,14 @@ from services.supervisor.machine_watch import MachineWatch
 from services.supervisor.post import Post, describe_exit
 from services.supervisor.preflight import check_everything
 from services.supervisor.silence import Silence
+from services.supervisor.spares import KEPT_FOR, Spares
 from services.support.environment import process_environment
 from services.support.machine import MachineMeter
 from services.support.signals import stop_on_signals
 from services.support.version import kinebox_version
 
 TICK_S = 0.1
-HELD_UP_S = 1.0
+HELD_UP_S = 0.5
 """If a tick took longer than this, the supervisor itself was held up and nobody else is to blame."""
 END_WITHIN_S = 5.0
 """Longer than an inference takes on a box under load: whoever can end cleanly shall."""
@@ -75,6 +76,7 @@ class Supervisor:
         self._start_ns = time.monotonic_ns()
         self._version = kinebox_version()
         self._silence = Silence(ROUTER)
+        self._spares = Spares(self._begin_spare, journal)
         self._machine = MachineWatch(MachineMeter(data))
         self._page_answers = False
 
@@ -103,6 +105,8 @@ class Supervisor:
                 self._silence.restart_clocks(now_s)
             for post in self._posts:
                 self._attend(post, now_s)
+                if self._site.supervisor.spares and post.name in KEPT_FOR and post.child is not None:
+                    self._spares.keep(post.spec, post.first_heard_s, now_s)
             self._kill_hung(now_s)
             self._look_at_machine(now_s)
             self._speak(link)
@@ -117,16 +121,22 @@ class Supervisor:
         poller.poll(timeout_s * 1e3)
 
     def _start(self, post: Post) -> None:
-        command = post.spec.command(self._site_file, self._data, self._start_ns)
-        post.manned_by(Child(command, self._environment, post.spec.niceness))
+        post.manned_by(self._spares.take(post.name) or self._begin(post.spec, spare=False))
         self._silence.start(post.name, time.monotonic())
+
+    def _begin(self, spec: ChildSpec, *, spare: bool) -> Child:
+        command = spec.command(self._site_file, self._data, self._start_ns, spare=spare)
+        return Child(command, self._environment, spec.niceness, waits=spare)
+
+    def _begin_spare(self, spec: ChildSpec) -> Child:
+        return self._begin(spec, spare=True)
 
     def _attend(self, post: Post, now_s: float) -> None:
         if post.child is not None:
             self._pass_on(post, post.child)
             if (code := post.child.poll()) is not None:
                 self._bury(post, post.child, code, now_s)
-        elif post.start_at_s is not None and now_s >= post.start_at_s:
+        if post.child is None and post.start_at_s is not None and now_s >= post.start_at_s:
             self._start(post)
 
     def _bury(self, post: Post, child: Child, code: int, now_s: float) -> None:
@@ -145,6 +155,10 @@ class Supervisor:
 
     def _hear(self, link: BusLink, now_s: float) -> None:
         posts = {post.name: post for post in self._posts}
+        for name, pid in link.beats():
+            post = posts.get(name)
+            if post is not None and post.child is not None and post.child.pid == pid:
+                self._silence.beat(name, now_s)
         for health in link.heard():
             post = posts.get(health.process)
             # What an earlier process of that name said, or we on its behalf, is no sign of life.
@@ -185,6 +199,7 @@ class Supervisor:
     def _end_all(self) -> None:
         """SIGTERM to all, SIGKILL to those that still run `END_WITHIN_S` later; done as soon as all have ended."""
         self._journal.say("ending")
+        self._spares.dismiss()
         children = {post.name: post.child for post in self._posts if post.child is not None}
         for child in children.values():
             child.ask_to_end()

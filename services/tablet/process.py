@@ -25,6 +25,7 @@ PAGE = Path(__file__).parent / "web" / "dist"
 
 _RECEIVE_TIMEOUT_S = 0.1
 _SHUTDOWN_S = 1
+_BEAT_S = 0.1
 _KEEP = 2
 _MAX_CLIENT_MESSAGE_BYTES = 4096
 
@@ -109,6 +110,7 @@ async def _serve(context: ProcessContext, server: TabletServer, listener: socket
     endless = (
         asyncio.create_task(server.show_statuses(), name="statuses"),
         asyncio.create_task(_publish_health(context, server), name="health"),
+        asyncio.create_task(_beat(context), name="beat"),
     )
     for part in (receiver, *endless):
         part.add_done_callback(end)
@@ -148,6 +150,13 @@ def _decoded(delivery: Delivery, server: TabletServer) -> Callable[[], None]:
         return lambda: server.receive_health(health)
     except codec.CodecError:
         return server.reject_bus_message
+
+
+async def _beat(context: ProcessContext) -> None:
+    """Say that the event loop goes round."""
+    while True:
+        context.beat()
+        await asyncio.sleep(_BEAT_S)
 
 
 async def _publish_health(context: ProcessContext, server: TabletServer) -> None:

@@ -53,8 +53,9 @@ class TabletServer:
         self.room.receive_health(health, self._clock_ns())
 
     def set_alive(self, process: str, alive: bool) -> None:
-        """A process joined or left the bus."""
+        """A process joined or left the bus. Everyone is told at once: an outage may end before the next status is due."""
         self.room.set_alive(process, alive, self._clock_ns())
+        self.show_status()
 
     def reject_bus_message(self) -> None:
         """A message could not be read."""
@@ -72,10 +73,14 @@ class TabletServer:
         """A session for a client whose malformed messages are counted here."""
         return Session(socket, self._clock_ns, self._reject_client_message)
 
+    def show_status(self) -> None:
+        """Show the room's state to everyone."""
+        self.audience.show_status(self.status().model_dump_json())
+
     async def show_statuses(self) -> None:
         """Show the room's state to everyone twice a second, for ever."""
         while True:
-            self.audience.show_status(self.status().model_dump_json())
+            self.show_status()
             await asyncio.sleep(STATUS_PERIOD_S)
 
     def _reject_client_message(self) -> None:

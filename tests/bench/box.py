@@ -97,11 +97,11 @@ class Memory:
 def processes(box: psutil.Process) -> dict[str, psutil.Process]:
     """The box's processes by their name on the bus."""
     found = {"supervisor": box}
-    for child in box.children(recursive=True):
+    for child in sorted(box.children(recursive=True), key=psutil.Process.create_time):
         with contextlib.suppress(psutil.Error):
             name = name_of(child.cmdline())
             if name is not None:
-                found[name] = child
+                found[name if name not in found else f"{name}-spare"] = child
     return found
 
 

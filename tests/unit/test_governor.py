@@ -144,3 +144,14 @@ def test_no_camera_alive_changes_nothing() -> None:
 def test_the_cameras_take_turns_evenly() -> None:
     offsets = [governor.turn_offset_ns(position, 4, 10.0) for position in range(4)]
     assert offsets == [0, 25_000_000, 50_000_000, 75_000_000]
+
+
+def test_a_fusion_that_takes_over_goes_on_with_the_plan_that_is_in_force() -> None:
+    obeying = CameraHealth("cam", 30.0, 10.0, 10.0, 0, 5.0, "lightning", {})
+    state = governor.step(GovernorState(), Load(2.0, 1.9, [obeying] * 4), 10**9, 30.0, 0.85)
+    assert state.current == governor.Level(10.0, "lightning")
+
+
+def test_cameras_with_a_plan_of_no_rung_make_a_start_as_always() -> None:
+    odd = CameraHealth("cam", 30.0, 3.0, 3.0, 0, 5.0, "thunder", {})
+    assert governor.step(GovernorState(), Load(2.0, 1.9, [odd] * 4), 10**9, 30.0, 0.85).level == governor.START

@@ -1,0 +1,71 @@
+"""Spares: processes that have imported and warmed up everything and wait, so that a lesson does not wait for that.
+
+Fusion takes two seconds of CPU to start, on a box whose CPU is in use, and everybody waits for it; the page's server takes one. A
+spare has no place on the bus and costs memory only. When its post falls vacant it is told to begin.
+"""
+
+from collections.abc import Callable, Iterator
+
+from models.process import ROUTER
+from services.supervisor.child import Child, ChildSpec
+from services.supervisor.journal import Journal
+
+KEPT_FOR = (ROUTER, "tablet")
+"""Those without whom nobody sees a figure. A camera that starts anew is stood in for by the others."""
+AFTER_S = 3.0
+"""So long a post must have been manned and heard: the box that starts, or mends itself, needs the CPU more."""
+AGAIN_AFTER_S = 60.0
+"""A spare that ended by itself is not replaced sooner."""
+
+
+class Spares:
+    """At most one waiting process a post.
+
+    Args:
+        begin: starts a process of a kind that waits.
+        journal: takes what spares say.
+    """
+
+    def __init__(self, begin: Callable[[ChildSpec], Child], journal: Journal) -> None:
+        self._begin = begin
+        self._journal = journal
+        self._waiting: dict[str, Child] = {}
+        self._not_before_s: dict[str, float] = {}
+
+    def take(self, name: str) -> Child | None:
+        """The spare of a post, told to begin; None if there is none. One that is not ready yet begins when it is."""
+        spare = self._waiting.pop(name, None)
+        if spare is None or spare.poll() is not None:
+            return None
+        spare.begin()
+        return spare
+
+    def keep(self, spec: ChildSpec, healthy_since_s: float | None, now_s: float) -> None:
+        """Look after the spare of a post: pass on what it says, bury one that ended, start one that is missing.
+
+        Args:
+            spec: of the post.
+            healthy_since_s: when the process of the post was heard first; None if it was not.
+            now_s: CLOCK_MONOTONIC.
+        """
+        spare = self._waiting.get(spec.name)
+        if spare is not None:
+            for line in spare.lines():
+                self._journal.child_said(spec.name, line)
+            if spare.poll() is not None:
+                spare.close()
+                del self._waiting[spec.name]
+                self._not_before_s[spec.name] = now_s + AGAIN_AFTER_S
+        elif healthy_since_s is not None and now_s >= max(healthy_since_s + AFTER_S, self._not_before_s.get(spec.name, 0.0)):
+            self._waiting[spec.name] = self._begin(spec)
+
+    def dismiss(self) -> None:
+        """End all of them."""
+        for spare in self._all():
+            spare.kill()
+            spare.wait()
+            spare.close()
+
+    def _all(self) -> Iterator[Child]:
+        while self._waiting:
+            yield self._waiting.popitem()[1]
