@@ -61,6 +61,16 @@ class FusionConfig(Section, frozen=True):
     live_hz: Annotated[float, Meta(ge=30, le=60, description="fused poses a second")] = 30.0
 
 
+class LessonsConfig(Section, frozen=True):
+    """Recorded lessons: what the cameras saw as keypoints, never pictures; about 3 MB a minute."""
+
+    folder: Annotated[str, Meta(min_length=1, description="where they are kept, relative to the data folder")] = "lessons"
+    automatic: Annotated[bool, Meta(description="record whenever the box runs, without being asked")] = False
+    least_free_mb: Annotated[
+        int, Meta(ge=10, le=1_000_000, description="recording ends when the disk has no more than this left, in MB")
+    ] = 500
+
+
 class LogsConfig(Section, frozen=True):
     """The log files, `logs` in the data folder. At most `max_files` times `max_file_mb` is kept; the oldest goes first."""
 
@@ -90,6 +100,7 @@ class Site(Section, frozen=True):
     inference: InferenceConfig = InferenceConfig()
     fusion: FusionConfig = FusionConfig()
     supervisor: SupervisorConfig = SupervisorConfig()
+    lessons: LessonsConfig = LessonsConfig()
     logs: LogsConfig = LogsConfig()
 
 

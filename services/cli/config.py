@@ -4,7 +4,7 @@ import datetime as dt
 import difflib
 from pathlib import Path
 
-from services.cli import site_toml
+from services.support import site_toml
 from services.support.site_files import read_file, read_site
 from services.support.site_migration import MigratedText, migrate_file, migrated_text
 
