@@ -6,8 +6,8 @@ from models.messages.health import CameraHealth, Health
 from models.process import Resources
 
 PERIOD_NS = 1_000_000_000
-SILENT_NS = 2_000_000_000
-"""A camera that showed nothing for this long is reported."""
+SILENT_NS = 700_000_000
+"""A camera that showed nothing for this long, and for two of its pictures, is reported, and at once."""
 
 
 @dataclass
@@ -27,12 +27,16 @@ class Meter:
     inferred: int = 0
     damaged: int = 0
     backlog_ns: int = 0
+    spacing_ns: int = 0
+    silence_told: bool = False
     spent_ns: dict[str, int] = field(default_factory=dict)
 
     def grabbed(self, t_now_ns: int, t_mid_ns: int, pictures: int) -> None:
         """A grab moved the source on by that many pictures, the newest of that instant."""
         self.pictures += pictures
         self.t_picture_ns = t_now_ns
+        if self.t_mid_ns is not None:
+            self.spacing_ns = t_mid_ns - self.t_mid_ns
         self.t_mid_ns = t_mid_ns
 
     def in_vain(self, t_now_ns: int) -> None:
@@ -44,13 +48,14 @@ class Meter:
         self.backlog_ns = max(self.backlog_ns, age_ns)
 
     def is_due(self, t_now_ns: int) -> bool:
-        """Whether a second has passed since the last report."""
-        return t_now_ns - self.t_report_ns >= PERIOD_NS
+        """Whether a second has passed since the last report, or the camera has just fallen silent."""
+        return t_now_ns - self.t_report_ns >= PERIOD_NS or (self._silent() and not self.silence_told)
 
     def report(self, t_now_ns: int, target_hz: float, network: str, problem: str, used: Resources) -> Health:
         """The health message of the time since the last report; counting begins anew."""
         seconds = max(1e-9, (t_now_ns - self.t_report_ns) * 1e-9)
         reason = self._reason(problem)
+        self.silence_told = self._silent()
         camera = CameraHealth(
             camera=self.camera,
             source_hz=self._source_hz(seconds),
@@ -78,15 +83,22 @@ class Meter:
 
     def _source_hz(self, seconds: float) -> float:
         """By the pictures' own times: after a second without a grab, the pictures of two seconds are counted at once."""
+        if self._silent():
+            return 0.0
         if self.t_mid_ns is None or self.t_mid_reported_ns is None or self.t_mid_ns <= self.t_mid_reported_ns:
             return self.pictures / seconds
         return self.pictures / ((self.t_mid_ns - self.t_mid_reported_ns) * 1e-9)
 
+    def _silence_ns(self) -> int:
+        return self.t_in_vain_ns - self.t_picture_ns
+
+    def _silent(self) -> bool:
+        return self._silence_ns() >= max(SILENT_NS, 2 * self.spacing_ns)
+
     def _reason(self, problem: str) -> str:
         reasons = []
-        silent_ns = self.t_in_vain_ns - self.t_picture_ns
-        if silent_ns >= SILENT_NS:
-            reasons.append(f"camera '{self.camera}' has shown nothing for {silent_ns * 1e-9:.0f} s")
+        if self._silent():
+            reasons.append(f"camera '{self.camera}' has shown nothing for {self._silence_ns() * 1e-9:.0f} s")
         if self.damaged:
             reasons.append(f"camera '{self.camera}': {self.damaged} damaged pictures in the last second")
         if problem:

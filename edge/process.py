@@ -8,9 +8,11 @@ from dataclasses import dataclass, field
 import cv2
 import msgspec
 
+from edge.cameras.faulty import FaultySource, Script
 from edge.cameras.shape import require_calibrated_size
 from edge.cameras.source import Clock, Frame, MonotonicClock, PictureError, Source
 from edge.cameras.video import Schedule, VideoSource, load_video
+from edge.cameras.watched import WatchedSource
 from edge.library import Library
 from edge.meter import Meter
 from edge.observe import EdgeConfig, EdgeState, Networks, Stages, observe
@@ -42,7 +44,8 @@ def main(context: ProcessContext) -> None:
     """
     cv2.setNumThreads(1)
     clock = MonotonicClock()
-    source = open_source(_camera_config(context), context, clock)
+    config = _camera_config(context)
+    source = WatchedSource(lambda: open_source(config, context, clock), config.name, clock)
     try:
         EdgeLoop(context, source, open_library(context), clock).run()
     finally:
@@ -64,12 +67,15 @@ def open_source(config: CameraConfig, context: ProcessContext, clock: Clock) -> 
 
     Raises:
         UserError: its file cannot be played, or its pictures are not of the size that was calibrated.
+        SourceError: a fault of the site file's keeps it from being opened now.
     """
     path = context.data / config.path
     video = load_video(path, config.name)
     require_calibrated_size(config.name, video.shape(path), context.rig.cameras[context.rig.index(config.name)].size_px)
     schedule = Schedule(context.start_ns, round(config.shutter_delay_ms * MILLISECOND_NS), config.rate_hz)
-    return VideoSource(video, schedule, clock)
+    source = VideoSource(video, schedule, clock)
+    faults = [fault for fault in context.site.faults if fault.camera == config.name]
+    return FaultySource(source, Script(faults, context.start_ns), clock) if faults else source
 
 
 def stage_clock(provider: Provider) -> Callable[[], int]:
@@ -197,7 +203,7 @@ class EdgeLoop:
         now_ns = self._clock.now_ns()
         if not self._meter.is_due(now_ns):
             return
-        problem = "; ".join(filter(None, (self._library.problem, self._plan.problem)))
+        problem = "; ".join(filter(None, (self._source.problem, self._library.problem, self._plan.problem)))
         network = self._library.current
         health = self._meter.report(now_ns, control.rate_hz, network, problem, self._context.resources())
         self._context.bus.publish(topics.health(self._context.name), codec.encode(health))

@@ -47,11 +47,23 @@ class Source(Protocol):
     def skipped(self) -> int:
         """Pictures, since the first grab, that nobody grabbed because a newer one was already there."""
 
+    @property
+    def problem(self) -> str:
+        """What is wrong with the camera now, in a line for people; empty if nothing is known to be."""
+
     def grab(self, timeout_s: float) -> Frame | None:
-        """Wait for a picture newer than the last one grabbed and return the newest there is; None after `timeout_s`."""
+        """Wait for a picture newer than the last one grabbed and return the newest there is; None after `timeout_s`.
+
+        Raises:
+            SourceError: there will be no more.
+        """
 
     def close(self) -> None:
         """Let go of the device or file."""
+
+
+class SourceError(Exception):
+    """The source has ended or is gone: it must be opened again, and that may fail for a while. Says which camera and why."""
 
 
 class PictureError(Exception):

@@ -108,6 +108,11 @@ class VideoSource:
         """See `Source.skipped`."""
         return self._skipped
 
+    @property
+    def problem(self) -> str:
+        """See `Source.problem`: a file has none once it is read."""
+        return ""
+
     def grab(self, timeout_s: float) -> JpegFrame | None:
         """See `Source.grab`."""
         now_ns = self._clock.now_ns()

@@ -88,6 +88,23 @@ class SupervisorConfig(Section, frozen=True):
     ] = True
 
 
+class FaultConfig(Section, frozen=True):
+    """A fault of a camera on demand, for drills and rehearsals: how a box copes can be seen before it must. A lesson has none."""
+
+    camera: Annotated[Name, Meta(description="the camera that falls ill")]
+    kind: Annotated[
+        Literal["end", "stall", "repeat", "jump"],
+        Meta(
+            description="end: it is gone and cannot be opened; stall: it shows nothing; repeat: it shows one picture again and "
+            "again; jump: its clock is wrong by `by_s`"
+        ),
+    ]
+    at_s: Annotated[float, Meta(ge=0, description="seconds after the start of the box")]
+    for_s: Annotated[float, Meta(gt=0, description="how long it lasts")]
+    every_s: Annotated[float, Meta(ge=0, description="it comes again so many seconds after it began; 0: it comes once")] = 0.0
+    by_s: Annotated[float, Meta(ge=-1e6, le=1e6, description="how far a clock jumps, forwards positive")] = 5.0
+
+
 class Site(Section, frozen=True):
     """A whole site file."""
 
@@ -102,6 +119,7 @@ class Site(Section, frozen=True):
     supervisor: SupervisorConfig = SupervisorConfig()
     lessons: LessonsConfig = LessonsConfig()
     logs: LogsConfig = LogsConfig()
+    faults: Annotated[list[FaultConfig], Meta(max_length=64, description="faults on demand")] = []
 
 
 class _Versioned(msgspec.Struct):
@@ -146,6 +164,9 @@ def decode_site(data: bytes, origin: Path | str) -> Site:
     doubled = sorted({name for name in names if names.count(name) > 1})
     if doubled:
         raise UserError(f"site file {origin}: camera '{doubled[0]}' occurs twice; every camera needs a name of its own")
+    for fault in site.faults:
+        if fault.camera not in names:
+            raise UserError(f"site file {origin}: a fault is for camera '{fault.camera}', which is not one of {', '.join(names)}")
     return site
 
 

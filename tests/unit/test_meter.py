@@ -74,3 +74,26 @@ def test_pictures_that_were_caught_up_with_do_not_make_the_source_look_faster() 
     camera = counted.report(3 * SECOND_NS, 10.0, "thunder", "", USED).camera
     assert camera is not None
     assert camera.source_hz == pytest.approx(30.0)
+
+
+def test_a_camera_that_falls_silent_is_reported_at_once_and_not_with_the_rate_that_it_had() -> None:
+    counted = meter()
+    for k in range(9):
+        counted.grabbed(k * SECOND_NS // 30, k * SECOND_NS // 30, 1)
+    counted.in_vain(SECOND_NS * 95 // 100)
+    assert not counted.is_due(SECOND_NS * 95 // 100)
+    counted.in_vain(SECOND_NS * 98 // 100)
+    assert counted.is_due(SECOND_NS * 98 // 100)
+    health = counted.report(SECOND_NS * 98 // 100, 10.0, "thunder", "", USED)
+    assert health.camera is not None
+    assert health.camera.source_hz == 0
+    counted.in_vain(SECOND_NS)
+    assert not counted.is_due(SECOND_NS), "once is enough"
+
+
+def test_a_camera_of_one_picture_a_second_is_not_silent_between_them() -> None:
+    counted = meter()
+    for k in range(3):
+        counted.grabbed(k * SECOND_NS, k * SECOND_NS, 1)
+    counted.in_vain(2 * SECOND_NS + SECOND_NS * 9 // 10)
+    assert counted.report(3 * SECOND_NS, 1.0, "thunder", "", USED).state == "ok"
