@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
+import msgspec
+
 from models.camera.rig import Rig
 from models.config.site import Site
 
@@ -20,7 +22,9 @@ EDGE = "edge"
 RECORDER = "recorder"
 """The process that writes lessons."""
 REPLAY = "replay"
-"""The process that plays a lesson; then it is the router, in fusion's place."""
+"""The process that plays a lesson, in fusion's place."""
+ROUTERS = (ROUTER, REPLAY)
+"""One of them runs in every box, and has the bus."""
 
 Check = Callable[[Site, Rig, Path], None]
 """What a part wants checked before anything is started, with the data folder; it raises `UserError` if the part could not work."""
@@ -78,19 +82,18 @@ class Resources(NamedTuple):
     rss_mb: float
 
 
-@dataclass(frozen=True)
-class Playback:
+class Playback(msgspec.Struct, frozen=True):
     """A lesson that is played in the place of a room.
 
     Attributes:
-        file: the lesson's.
+        file: path of the lesson.
         title: what people call the lesson; may be empty.
         began_wall_ns: CLOCK_REALTIME at which it was begun.
         speed: seconds of the lesson a second.
         loop: begin again at its end.
     """
 
-    file: Path
+    file: str
     title: str
     began_wall_ns: int
     speed: float

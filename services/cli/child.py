@@ -5,9 +5,13 @@ costs 80 ms of CPU, six times at every start of the box.
 """
 
 import argparse
+from functools import partial
 from pathlib import Path
 
+import msgspec
+
 from models.errors import UserError
+from models.process import Playback
 from services.cli.process import ProcessOrder, run_process
 from services.cli.user_error import exit_with_line
 from services.supervisor.lifeline import end_with_parent
@@ -24,11 +28,21 @@ def main() -> None:
     parser.add_argument("--start-ns", type=int)
     parser.add_argument("--parent", type=int, required=True)
     parser.add_argument("--spare", action="store_true")
+    parser.add_argument("--playback", type=partial(msgspec.json.decode, type=Playback))
     arguments = parser.parse_args()
     if not end_with_parent(arguments.parent):
         return
-    order = ProcessOrder(arguments.entry, arguments.site, arguments.data, arguments.camera, arguments.start_ns, arguments.spare)
+    order = ProcessOrder(
+        arguments.entry,
+        arguments.site,
+        arguments.data,
+        arguments.camera,
+        arguments.start_ns,
+        arguments.spare,
+        arguments.playback,
+    )
     logs.configure(order.name)
+    logs.log_what_ends_us()
     try:
         run_process(order)
     except UserError as error:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from models.errors import UserError
-from models.process import EDGE, ROUTER, Bus, ProcessContext, process_name
+from models.process import EDGE, ROUTERS, Bus, Playback, ProcessContext, process_name
 from services.cli.parts import find_process, load_process
 from services.support.health import ResourceMeter
 from services.support.heartbeat import Heartbeat
@@ -19,7 +19,7 @@ class ProcessOrder:
     """What to run: the process's entry point, and for an edge process its camera.
 
     `start_ns` is shared by all processes of one run; None is now. A `spare` gets everything ready, then waits for a line on its
-    standard input, and ends without having joined the bus if that is closed.
+    standard input, and ends without having joined the bus if that is closed. `playback` is what a replay plays.
     """
 
     entry: str
@@ -28,6 +28,7 @@ class ProcessOrder:
     camera: str | None = None
     start_ns: int | None = None
     spare: bool = False
+    playback: Playback | None = None
 
     @property
     def name(self) -> str:
@@ -48,7 +49,8 @@ def run_process(order: ProcessOrder) -> None:
     from services.bus.zenoh_bus import open_client, open_router  # noqa: PLC0415 - a wrong site file shall not wait for it
 
     bus: Bus | None
-    if order.entry == ROUTER and not order.spare:
+    routes = order.entry in ROUTERS
+    if routes and not order.spare:
         # The router first, because everybody waits for it.
         bus = open_router(site.bus.endpoint)
         main = load_process(entry)
@@ -56,7 +58,7 @@ def run_process(order: ProcessOrder) -> None:
         main = load_process(entry)
         if order.spare and not sys.stdin.buffer.readline():
             return
-        bus = open_router(site.bus.endpoint) if order.entry == ROUTER else open_client(site.bus.endpoint, stop)
+        bus = open_router(site.bus.endpoint) if routes else open_client(site.bus.endpoint, stop)
     if bus is None:
         return
     context = ProcessContext(
@@ -69,6 +71,7 @@ def run_process(order: ProcessOrder) -> None:
         bus=bus,
         stop=stop,
         resources=ResourceMeter(),
+        playback=order.playback,
         beat=Heartbeat(order.name, bus),
     )
     try:

@@ -9,8 +9,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import msgspec
+
 from models.errors import USER_ERROR_PREFIX
-from models.process import process_name
+from models.process import Playback, process_name
 
 EDGE_NICENESS = 5
 """Inference takes all the CPU that it is given; fusion and the page, which need little, shall not wait for it."""
@@ -22,10 +24,11 @@ _LONGEST_LINE_BYTES = 65536
 
 @dataclass(frozen=True)
 class ChildSpec:
-    """What to start: a process by its entry point, for one camera or none."""
+    """What to start: a process by its entry point, for one camera or none; in a replay, with what is played."""
 
     entry: str
     camera: str | None = None
+    playback: Playback | None = None
 
     @property
     def name(self) -> str:
@@ -42,6 +45,7 @@ class ChildSpec:
         words = [sys.executable, "-P", "-m", _MODULE, self.entry, "--site", str(site), "--data", str(data)]
         words += ["--start-ns", str(start_ns), "--parent", str(os.getpid())]
         words += ["--spare"] if spare else []
+        words += ["--playback", msgspec.json.encode(self.playback).decode()] if self.playback else []
         return words if self.camera is None else [*words, "--camera", self.camera]
 
 

@@ -14,7 +14,8 @@ from threading import Event
 from models.config.site import Site
 from models.errors import USER_ERROR_CODE
 from models.messages.health import SupervisorHealth
-from models.process import EDGE, ROUTER, Check
+from models.process import EDGE, RECORDER, REPLAY, ROUTER, Check, Playback
+from services.logs.files import STARTED, log_folder
 from services.supervisor import page
 from services.supervisor.bus_link import BusLink
 from services.supervisor.child import Child, ChildSpec
@@ -36,52 +37,60 @@ END_WITHIN_S = 5.0
 """Longer than an inference takes on a box under load: whoever can end cleanly shall."""
 
 
-def supervise(site_file: Path, data: Path, checks: Iterable[Check]) -> None:
-    """Run the box until SIGINT or SIGTERM.
+def supervise(site_file: Path, data: Path, checks: Iterable[Check], playback: Playback | None = None) -> None:
+    """Run the box until SIGINT or SIGTERM, or until what is played is over.
 
     Args:
         site_file: the site file.
         data: folder with networks, footage and, from now on, logs.
         checks: what the parts want checked before anything is started.
+        playback: a lesson to play in the place of fusion and the cameras.
 
     Raises:
         UserError: something is wrong with the site or what it needs; nothing was started.
     """
     stop = stop_on_signals()
     site = check_everything(site_file, data, checks)
-    journal = Journal(data / "logs")
+    # Beside the log of a box that may be running on the same folder.
+    logs = log_folder(data)
+    journal = Journal(logs / REPLAY if playback else logs, config=site.logs)
+    journal.note(STARTED, site=str(site_file.resolve()), version=kinebox_version())
     try:
-        Supervisor(site_file, data, site, journal).run(stop)
+        Supervisor(site_file, data, site, journal, playback).run(stop)
     finally:
         journal.close()
 
 
-def posts_of(site: Site) -> list[Post]:
-    """What has to run for a site; the router first, since all others wait for it."""
+def posts_of(site: Site, playback: Playback | None = None) -> list[Post]:
+    """What has to run for a site, or for a replay in it; the router first, since all others wait for it."""
+    if playback is not None:
+        return [Post(ChildSpec(REPLAY, playback=playback)), Post(ChildSpec("tablet", playback=playback))]
     cameras = [ChildSpec(EDGE, camera.name) for camera in site.cameras]
-    return [Post(spec) for spec in (ChildSpec(ROUTER), *cameras, ChildSpec("tablet"))]
+    return [Post(spec) for spec in (ChildSpec(ROUTER), *cameras, ChildSpec("tablet"), ChildSpec(RECORDER))]
 
 
 class Supervisor:
     """The running box."""
 
-    def __init__(self, site_file: Path, data: Path, site: Site, journal: Journal) -> None:
+    def __init__(self, site_file: Path, data: Path, site: Site, journal: Journal, playback: Playback | None = None) -> None:
         self._site_file = site_file
         self._data = data
         self._site = site
         self._journal = journal
-        self._posts = posts_of(site)
+        self._posts = posts_of(site, playback)
+        self._name = site.name if playback is None else f"The replay of {playback.title or 'the lesson'}"
         self._environment = dict(os.environ) | process_environment(data)
         # Now, not later: a source begins with the picture that is due when it is ready, so waiting would gain nothing.
         self._start_ns = time.monotonic_ns()
         self._version = kinebox_version()
-        self._silence = Silence(ROUTER)
+        self._silence = Silence(self._posts[0].name)
         self._spares = Spares(self._begin_spare, journal)
         self._machine = MachineWatch(MachineMeter(data))
         self._page_answers = False
+        self._over = False
 
     def run(self, stop: Event) -> None:
-        """Man every post until `stop` is set, then end all."""
+        """Man every post until `stop` is set or what is played is over, then end all."""
         try:
             self._journal.say(f"starting {', '.join(post.name for post in self._posts)}")
             for post in self._posts:
@@ -96,7 +105,7 @@ class Supervisor:
 
     def _watch(self, stop: Event, link: BusLink) -> None:
         before_s = time.monotonic()
-        while not stop.is_set():
+        while not stop.is_set() and not self._over:
             self._wait(TICK_S)
             now_s = time.monotonic()
             held_up, before_s = now_s - before_s > HELD_UP_S, now_s
@@ -109,6 +118,7 @@ class Supervisor:
                     self._spares.keep(post.spec, post.first_heard_s, now_s)
             self._kill_hung(now_s)
             self._look_at_machine(now_s)
+            self._journal.settle()
             self._speak(link)
             self._welcome()
 
@@ -143,6 +153,9 @@ class Supervisor:
         self._pass_on(post, child)
         child.close()
         self._silence.forget(post.name)
+        if post.spec.entry == REPLAY and code == 0:
+            post.child, self._over = None, True
+            return
         post.ended(code, child.user_error, now_s, self._site.supervisor)
         if post.given_up:
             self._journal.say(f"{post.name} is given up: {post.given_up}", level="error")
@@ -194,7 +207,7 @@ class Supervisor:
     def _welcome(self) -> None:
         if not self._page_answers and page.answers(self._site.tablet):
             self._page_answers = True
-            self._journal.welcome(page.welcome(self._site.name, self._site.tablet))
+            self._journal.welcome(page.welcome(self._name, self._site.tablet))
 
     def _end_all(self) -> None:
         """SIGTERM to all, SIGKILL to those that still run `END_WITHIN_S` later; done as soon as all have ended."""

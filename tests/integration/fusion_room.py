@@ -1,4 +1,4 @@
-"""Fusion's loop in a thread on the bus in memory, with a synthetic pupil before its cameras, and its log written to a lesson file."""
+"""Fusion's loop in a thread on the bus in memory, a synthetic pupil before its cameras, and its log written to a lesson file."""
 
 import threading
 import time

@@ -13,7 +13,7 @@ def test_a_length_is_read_as_it_is_written(text: str, seconds: float) -> None:
 
 @pytest.mark.parametrize("text", ["", "45", "m", "-5m", "0s", "1.5h", "30m1h", "45 minutes", "5m5m", "99999999s"])
 def test_what_is_no_length_is_refused_with_an_example(text: str) -> None:
-    with pytest.raises(UserError, match="--for: '.*' is no length of time; write it as 45m"):
+    with pytest.raises(UserError, match=r"--for: '.*' is no length of time; write it as 45m"):
         parse_duration(text, "--for")
 
 

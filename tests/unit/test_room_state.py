@@ -1,7 +1,5 @@
 """What the page is told of the room, for every way in which a part of it can be missing."""
 
-from pathlib import Path
-
 import msgspec
 import numpy as np
 import pytest
@@ -222,7 +220,7 @@ def test_recording_is_shown_while_the_recorder_says_so_and_no_longer() -> None:
 
 
 def test_what_is_played_never_looks_live_even_before_the_replay_is_heard() -> None:
-    lesson = Playback(Path("lesson.mcap"), "7b", began_wall_ns=1_764_000_000 * S, speed=0.5, loop=True)
+    lesson = Playback("lesson.mcap", "7b", began_wall_ns=1_764_000_000 * S, speed=0.5, loop=True)
     state = RoomState("gym", ("a", "b"), wished_hz=30.0, started_ns=T0, playback=lesson)
     shown = state.status(T0, 0).replay
     assert shown is not None

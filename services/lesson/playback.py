@@ -1,0 +1,144 @@
+"""The replay process: plays a lesson in the place of fusion and its cameras, at the lesson's own pace or another.
+
+What was observed goes through fusion's step again; motions come out with their times moved to now, so that a figure is as old
+when it is shown as it was in the lesson. What cameras and fusion said of themselves is said again at its time.
+"""
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+
+from models.errors import UserError
+from models.messages import codec, topics
+from models.messages.health import Health, ReplayHealth
+from models.messages.motion import Motion
+from models.process import EDGE, ROUTER, Playback, ProcessContext, process_name
+from services.fusion.warm_up import warm_up
+from services.lesson.lesson_reader import Lesson, open_lesson
+from services.lesson.replay import Replayed, configuration, decode, replay
+from services.support.health import HealthReporter
+
+SECOND_NS = 1_000_000_000
+LONGEST_PAUSE_NS = 3 * SECOND_NS
+"""Where nothing was recorded for longer (fusion was restarted, the disk was full), no more than this is waited."""
+_LATE_NS = SECOND_NS // 2
+"""Who is later than this gives up what was lost instead of hurrying after it."""
+_SAID_FOR_NS = 3 * SECOND_NS
+"""What a process of the lesson said is said again for so long in the lesson's time; after that it was silent."""
+_ROUND_S = 0.1
+
+
+def prepare() -> None:
+    """Compile before the process begins, as fusion does."""
+    warm_up()
+
+
+def main(context: ProcessContext) -> None:
+    """Play until told to stop or, unless it shall go on for ever, until the lesson's end.
+
+    Raises:
+        UserError: the lesson cannot be read or replayed.
+    """
+    if context.playback is None:
+        raise UserError("process 'replay' plays a lesson; start it with 'kinebox replay LESSON'")
+    with open_lesson(Path(context.playback.file)) as lesson:
+        Player(context, context.playback, lesson).run()
+
+
+@dataclass
+class Pace:
+    """Which instant of the lesson is due when.
+
+    Attributes:
+        speed: seconds of the lesson a second.
+        from_ns: an instant of the lesson, as fusion dated it.
+        at_ns: when that instant is due, CLOCK_MONOTONIC now.
+    """
+
+    speed: float
+    from_ns: int
+    at_ns: int
+
+    def due_ns(self, t_ns: int, now_ns: int) -> int:
+        """When an instant of the lesson is due; never long before `now_ns`, nor further ahead than a pause may last."""
+        due_ns = self.at_ns + round((t_ns - self.from_ns) / self.speed)
+        bounded_ns = min(max(due_ns, now_ns - _LATE_NS), now_ns + LONGEST_PAUSE_NS)
+        if bounded_ns != due_ns:
+            self.from_ns, self.at_ns = t_ns, bounded_ns
+        return bounded_ns
+
+
+class Player:
+    """The loop of `main`, with everything from outside passed in."""
+
+    def __init__(
+        self, context: ProcessContext, playback: Playback, lesson: Lesson, clock_ns: Callable[[], int] = time.monotonic_ns
+    ) -> None:
+        self._context = context
+        self._bus = context.bus
+        self._playback = playback
+        self._lesson = lesson
+        self._clock_ns = clock_ns
+        self._config = configuration(lesson.header.preset)
+        self._rig = lesson.header.rig()
+        self._players = {ROUTER, *(process_name(EDGE, name) for name in self._rig.names)}
+        self._said: dict[str, tuple[int, Health]] = {}
+        self._position_ns = 0
+        self._begin_ns, self._end_ns = lesson.span_ns()
+        self._reporter = HealthReporter(context.name, context.bus, context.resources, clock_ns)
+
+    def run(self) -> None:
+        """Play the lesson, again and again if that is wished."""
+        self._bus.declare_alive(topics.alive(self._context.name))
+        while not self._context.stop.is_set():
+            self._play(replay(self._lesson.parts(), self._rig, self._config))
+            if not self._playback.loop:
+                return
+
+    def _play(self, items: Iterator[Replayed]) -> None:
+        self._said.clear()
+        pace = Pace(self._playback.speed, self._begin_ns, self._clock_ns())
+        for item in items:
+            entry = item.entry
+            # Fusion has done its work already: what it gives out leaves when it is due.
+            due_ns = pace.due_ns(entry.t_ns, self._clock_ns())
+            if not self._wait_until(due_ns):
+                return
+            self._position_ns = entry.t_ns - self._begin_ns
+            if entry.kind == "health":
+                said = decode(entry, Health)
+                if said.process in self._players:
+                    self._said[said.process] = (entry.t_ns, said)
+            for motion in item.motions:
+                self._bus.publish(topics.motion(motion.kind), codec.encode(moved(motion, due_ns - entry.t_ns, self._clock_ns())))
+
+    def _wait_until(self, due_ns: int) -> bool:
+        """Go round until then, at least once; False if the process shall end."""
+        while True:
+            self._context.beat()
+            if self._reporter.due():
+                self._speak()
+            remaining_s = (due_ns - self._clock_ns()) * 1e-9
+            if self._context.stop.wait(max(min(remaining_s, _ROUND_S), 0.0)):
+                return False
+            if remaining_s <= _ROUND_S:
+                return True
+
+    def _speak(self) -> None:
+        length_s = (self._end_ns - self._begin_ns) * 1e-9
+        self._reporter.report(replay=ReplayHealth(self._position_ns * 1e-9, length_s, self._playback.speed))
+        lesson_ns, now_ns = self._begin_ns + self._position_ns, self._clock_ns()
+        for process, (t_ns, health) in self._said.items():
+            if lesson_ns - t_ns < _SAID_FOR_NS:
+                self._bus.publish(topics.health(process), codec.encode(msgspec.structs.replace(health, t_ns=now_ns)))
+
+
+def moved(motion: Motion, by_ns: int, now_ns: int) -> Motion:
+    """A motion of the lesson as one that is published now: all its times are later by `by_ns`."""
+    result: Motion = msgspec.structs.replace(
+        motion, t_ns=motion.t_ns + by_ns, t_newest_ns=motion.t_newest_ns + by_ns, t_published_ns=now_ns
+    )
+    return result
