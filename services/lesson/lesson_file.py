@@ -52,6 +52,7 @@ class Contents:
         counts: messages by channel.
         sequence: number of the next message.
         log_time_ns: of the latest message; log times never go back.
+        gaps: parts before which something is missing.
     """
 
     end: int = 0
@@ -61,6 +62,7 @@ class Contents:
     counts: dict[int, int] = field(default_factory=dict)
     sequence: int = 0
     log_time_ns: int = 0
+    gaps: int = 0
 
     def take_chunk(self, start: int, length: int, chunk: Chunk, messages: Sequence[Message]) -> None:
         """Note a chunk that lies at byte `start`, its message indexes behind it."""
@@ -92,11 +94,13 @@ class LessonWriter:
     Args:
         path: of the file, with `PART_SUFFIX`.
         file: opened for writing, at its end.
+        header: what is written at its beginning.
         contents: what it holds.
     """
 
-    def __init__(self, path: Path, file: BinaryIO, contents: Contents) -> None:
+    def __init__(self, path: Path, file: BinaryIO, header: LessonHeader, contents: Contents) -> None:
         self.path = path
+        self.header = header
         self._file = file
         self._contents = contents
 
@@ -114,7 +118,7 @@ class LessonWriter:
         before = MAGIC + encode(Header(PROFILE, f"kinebox {header.kinebox}"))
         body = encode(metadata)
         contents.metadata = MetadataIndex(len(before), len(body), metadata.name)
-        writer = cls(path, file, contents)
+        writer = cls(path, file, header, contents)
         try:
             writer._write(before + body + encode(*SCHEMAS, *CHANNELS))
             _sync_folder(folder)
@@ -123,6 +127,17 @@ class LessonWriter:
             path.unlink()
             raise
         return writer
+
+    @property
+    def recorded_s(self) -> float:
+        """Length of what is safe on the disk, from the first entry to the last, with the gaps."""
+        chunks = self._contents.chunks
+        return (chunks[-1].message_end_time - chunks[0].message_start_time) * 1e-9 if chunks else 0.0
+
+    @property
+    def gaps(self) -> int:
+        """Interruptions of what is safe on the disk."""
+        return self._contents.gaps
 
     @property
     def size(self) -> int:
@@ -152,6 +167,7 @@ class LessonWriter:
         start = contents.end
         self._write(body + b"".join(indexes))
         contents.take_chunk(start, len(body), chunk, messages)
+        contents.gaps += bool(gap)
 
     def finish(self) -> Path:
         """Write the summary, close the file and give it its final name.

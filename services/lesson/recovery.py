@@ -1,13 +1,20 @@
-"""What a crash left is made whole again: cut after its last whole chunk, and then finished or gone on with."""
+"""What a crash left is made whole again: cut after its last whole chunk, and then finished or gone on with.
+
+Nothing is thrown away but the beginning of one chunk: of a file that is damaged otherwise, the whole is kept beside what was
+recovered.
+"""
 
 import shutil
 from pathlib import Path
 from typing import BinaryIO
 
+import structlog
 from mcap.opcode import Opcode
 from mcap.records import Chunk, Message, MetadataIndex
 
+from models.errors import UserError
 from services.lesson import lesson_header
+from services.lesson.layout import PART_SUFFIX
 from services.lesson.lesson_file import Contents, LessonWriter
 from services.lesson.lesson_reader import PartDecoder, read_header
 from services.lesson.mcap_records import DamageError, Place, encode, message_indexes, messages, parse, walk
@@ -15,7 +22,39 @@ from services.lesson.mcap_records import DamageError, Place, encode, message_ind
 DAMAGED_SUFFIX = ".damaged"
 _LARGEST_TAIL = 2 * 2**20
 """A crash leaves no more behind the last whole chunk; if there is more, the damage is another, and a copy is kept."""
+log = structlog.get_logger()
+
 _BEGINNING = (Opcode.HEADER, Opcode.METADATA, Opcode.SCHEMA, Opcode.CHANNEL)
+
+
+def recover(folder: Path, run_ns: int) -> LessonWriter | None:
+    """Make every unfinished lesson of a folder whole. Nobody may be writing there.
+
+    Args:
+        folder: of the lessons.
+        run_ns: CLOCK_MONOTONIC at the start of this run of the box.
+
+    Returns:
+        The newest lesson that was begun in this run, still open, since the recorder died while it was being recorded; None if
+        there is none. All others are finished.
+    """
+    goes_on: LessonWriter | None = None
+    for path in sorted(folder.glob(f"*{PART_SUFFIX}")):
+        try:
+            writer = reopen(path)
+        except UserError as error:
+            path.rename(path.with_name(path.name + DAMAGED_SUFFIX))
+            log.warning("nothing could be recovered", lesson=path.name, reason=str(error))
+            continue
+        except OSError as error:
+            log.warning("a lesson could not be recovered", lesson=path.name, reason=str(error))
+            continue
+        log.info("lesson recovered", lesson=path.name, mb=round(writer.size / 1e6, 2))
+        if writer.header.run_ns == run_ns and (goes_on is None or writer.header.started_ns > goes_on.header.started_ns):
+            goes_on, writer = writer, goes_on
+        if writer is not None:
+            _finish(writer)
+    return goes_on
 
 
 def reopen(path: Path) -> LessonWriter:
@@ -27,7 +66,7 @@ def reopen(path: Path) -> LessonWriter:
     """
     file = path.open("r+b", buffering=0)
     try:
-        read_header(path, file)
+        header = read_header(path, file)
         contents = survey(file)
         if path.stat().st_size - contents.end > _LARGEST_TAIL:
             shutil.copyfile(path, path.with_name(path.name + DAMAGED_SUFFIX))
@@ -36,7 +75,7 @@ def reopen(path: Path) -> LessonWriter:
     except BaseException:
         file.close()
         raise
-    return LessonWriter(path, file, contents)
+    return LessonWriter(path, file, header, contents)
 
 
 def survey(file: BinaryIO) -> Contents:
@@ -56,6 +95,14 @@ def survey(file: BinaryIO) -> Contents:
     return contents
 
 
+def _finish(writer: LessonWriter) -> None:
+    try:
+        writer.finish()
+    except OSError as error:
+        writer.close()
+        log.warning("a recovered lesson could not be finished", lesson=writer.path.name, reason=str(error))
+
+
 class _WholeChunk:
     """Waits for a chunk and all its message indexes, which were written in one piece with it."""
 
@@ -63,11 +110,12 @@ class _WholeChunk:
         self._decoder = PartDecoder()
         self._chunk: tuple[Place, tuple[Message, ...]] | None = None
         self._indexes: list[bytes] = []
+        self._gap = False
 
     def take(self, place: Place, contents: Contents) -> bool:
         """The next record of the file, which `contents` gets once the chunk is whole; False if it belongs to no chunk."""
         if place.opcode == Opcode.CHUNK and not self._indexes:
-            self._decoder.decode(place)
+            self._gap = bool(self._decoder.decode(place).gap)
             found = messages(place)
             self._chunk = (place, found)
             self._indexes = [encode(index) for index in message_indexes(found)]
@@ -80,4 +128,5 @@ class _WholeChunk:
             chunk, found = self._chunk
             contents.take_chunk(chunk.start, chunk.end - chunk.start, parse(Chunk, chunk), found)
             contents.end, contents.checksum = place.end, place.checksum
+            contents.gaps += self._gap
         return True

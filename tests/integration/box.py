@@ -15,13 +15,14 @@ from services.bus.zenoh_bus import open_client
 from tests.integration.waiting import free_port, until
 
 ROOT = Path(__file__).parents[2]
-NAMES = ("fusion", "edge-a", "edge-b", "tablet")
+NAMES = ("fusion", "edge-a", "edge-b", "tablet", "recorder")
 
 ENTRY_POINTS = """
 [kinebox.processes]
 fusion = tests.integration.fake_parts:fusion
 edge = tests.integration.fake_parts:edge
 tablet = tests.integration.fake_parts:tablet
+recorder = tests.integration.fake_parts:recorder
 [kinebox.checks]
 edge = {check}
 """

@@ -34,6 +34,10 @@ def tablet(context: ProcessContext) -> None:
         _report_until_stopped(context, server)
 
 
+def recorder(context: ProcessContext) -> None:
+    _report_until_stopped(context)
+
+
 def check(_site: Site, _rig: Rig, data: Path) -> None:
     fault = data / "orders" / "check"
     if fault.is_file():

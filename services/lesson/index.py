@@ -1,0 +1,172 @@
+"""The list of lessons. The files are the truth: the index only saves reading them all, and is made anew if it is lost or broken."""
+
+import sqlite3
+from collections.abc import Iterator
+from dataclasses import astuple, dataclass
+from pathlib import Path
+
+import structlog
+
+from models.errors import UserError
+from services.lesson.layout import PART_SUFFIX, SUFFIX
+from services.lesson.lesson_reader import open_lesson, read_header
+
+NAME = "index.sqlite"
+_VERSION = 1
+_PATIENCE_S = 5.0
+"""How long to wait for another process that writes."""
+
+log = structlog.get_logger()
+
+
+@dataclass(frozen=True)
+class LessonRow:
+    """One lesson of the list.
+
+    Attributes:
+        lesson: its name, which is the file's without suffix.
+        title: what people call it.
+        started_s: seconds since 1970 (UTC).
+        seconds: from the first entry to the last.
+        bytes: of the file.
+        gaps: interruptions.
+        segments: stretches that replay in one go.
+        state: "finished"; "unfinished", which is being recorded, or was when its recorder died; "damaged".
+        problem: what a person is told who opens it; empty if nothing is wrong.
+        changed_ns: when the file was changed last, by which a changed file is known.
+    """
+
+    lesson: str
+    title: str
+    started_s: float
+    seconds: float
+    bytes: int
+    gaps: int
+    segments: int
+    state: str
+    problem: str
+    changed_ns: int
+
+
+_CREATE = """
+CREATE TABLE IF NOT EXISTS lessons (
+    lesson TEXT NOT NULL PRIMARY KEY,
+    title TEXT NOT NULL,
+    started_s REAL NOT NULL,
+    seconds REAL NOT NULL,
+    bytes INTEGER NOT NULL,
+    gaps INTEGER NOT NULL,
+    segments INTEGER NOT NULL,
+    state TEXT NOT NULL,
+    problem TEXT NOT NULL,
+    changed_ns INTEGER NOT NULL
+)"""
+_SELECT = "SELECT lesson, title, started_s, seconds, bytes, gaps, segments, state, problem, changed_ns FROM lessons"
+_REPLACE = "INSERT OR REPLACE INTO lessons VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"
+
+
+class LessonIndex:
+    """The index of one folder, in the file `index.sqlite` there.
+
+    Any number of processes may use it. If the folder cannot be written to, the list is made in memory each time.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._memory: sqlite3.Connection | None = None
+
+    def lessons(self) -> list[LessonRow]:
+        """Every lesson in the folder as its file is now, the newest first; a file that is new or was changed is read."""
+        connection = self._connect()
+        try:
+            known = {row.lesson: row for row in _rows(connection)}
+            found = {row.lesson: row for row in self._found(known)}
+            gone = [(lesson,) for lesson in known.keys() - found.keys()]
+            new = [astuple(row) for lesson, row in found.items() if row != known.get(lesson)]
+            if gone or new:
+                self._write(connection, gone, new)
+        finally:
+            if connection is not self._memory:
+                connection.close()
+        return sorted(found.values(), key=lambda row: (row.started_s, row.lesson), reverse=True)
+
+    def _write(self, connection: sqlite3.Connection, gone: list[tuple[str]], new: list[tuple[object, ...]]) -> None:
+        try:
+            with connection:
+                connection.executemany("DELETE FROM lessons WHERE lesson = ?", gone)
+                connection.executemany(_REPLACE, new)
+        except sqlite3.OperationalError as error:
+            log.warning("the index of lessons cannot be written", folder=str(self.folder), reason=str(error))
+
+    def _found(self, known: dict[str, LessonRow]) -> Iterator[LessonRow]:
+        for path in sorted(self.folder.glob(f"*{SUFFIX}")) + sorted(self.folder.glob(f"*{PART_SUFFIX}")):
+            try:
+                status = path.stat()
+            except FileNotFoundError:
+                continue  # Finished or removed meanwhile.
+            lesson = name_of(path)
+            row = known.get(lesson)
+            if row is None or (row.bytes, row.changed_ns) != (status.st_size, status.st_mtime_ns):
+                row = _read(path, lesson, status.st_size, status.st_mtime_ns)
+            yield row
+
+    def _connect(self) -> sqlite3.Connection:
+        if self._memory is None:
+            try:
+                return _connect(str(self.folder / NAME))
+            except sqlite3.OperationalError as error:
+                log.warning("the index of lessons cannot be written", folder=str(self.folder), reason=str(error))
+            except sqlite3.DatabaseError as error:
+                log.warning("the index of lessons is made anew", folder=str(self.folder), reason=str(error))
+                for path in self.folder.glob(f"{NAME}*"):
+                    path.unlink(missing_ok=True)
+                return self._connect()
+            self._memory = _connect(":memory:")
+        return self._memory
+
+
+def name_of(path: Path) -> str:
+    """The name of the lesson that a file holds."""
+    return path.name.removesuffix(PART_SUFFIX).removesuffix(SUFFIX)
+
+
+def _connect(database: str) -> sqlite3.Connection:
+    connection = sqlite3.connect(database, timeout=_PATIENCE_S)
+    try:
+        connection.execute("PRAGMA journal_mode = WAL")
+        # After a power cut the last changes may be missing: the files are read again then.
+        connection.execute("PRAGMA synchronous = NORMAL")
+        (version,) = connection.execute("PRAGMA user_version").fetchone()
+        if version not in (0, _VERSION):
+            raise sqlite3.DatabaseError(f"version {version}")
+        connection.execute(_CREATE)
+        connection.execute(f"PRAGMA user_version = {_VERSION}")
+        list(_rows(connection))
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def _rows(connection: sqlite3.Connection) -> Iterator[LessonRow]:
+    for values in connection.execute(_SELECT):
+        yield LessonRow(*values)
+
+
+def _read(path: Path, lesson: str, size: int, changed_ns: int) -> LessonRow:
+    title, started_s, seconds, gaps, segments, state, problem = "", changed_ns * 1e-9, 0.0, 0, 0, "finished", ""
+    try:
+        if path.name.endswith(PART_SUFFIX):
+            state = "unfinished"
+            with path.open("rb") as file:
+                header = read_header(path, file)
+            title, started_s = header.title, header.started_s
+            seconds = max(changed_ns * 1e-9 - started_s, 0.0)
+        else:
+            with open_lesson(path) as opened:
+                title, started_s = opened.header.title, opened.header.started_s
+                summary = opened.summary()
+            seconds, gaps, segments = summary.seconds, summary.gaps, summary.segments
+    except (UserError, OSError) as error:
+        state, problem = "damaged", str(error)
+    return LessonRow(lesson, title, started_s, seconds, size, gaps, segments, state, problem, changed_ns)

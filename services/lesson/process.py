@@ -1,0 +1,126 @@
+"""The recorder process: parts of fusion's log and people's wishes in; files, requests to fusion and health out."""
+
+import fcntl
+from pathlib import Path
+from typing import BinaryIO
+
+import structlog
+
+from models.camera.rig import encode_rig
+from models.errors import UserError
+from models.messages import codec, topics
+from models.messages.lesson import FusionLog, LessonRequest
+from models.process import Delivery, ProcessContext
+from services.lesson import origin
+from services.lesson.lesson_header import LessonHeader
+from services.lesson.recorder import Recorder
+from services.lesson.recovery import recover
+from services.support.health import HealthReporter
+from services.support.machine import clocks_ns
+from services.support.site_toml import render
+from services.support.version import kinebox_version
+
+KEEP = 64
+"""Unread parts: half a minute, for which a slow disk may hold the recorder up."""
+_ROUND_S = 0.25
+_LOCK = ".recorder"
+
+log = structlog.get_logger()
+
+
+def main(context: ProcessContext) -> None:
+    """Record when asked, until told to stop.
+
+    Raises:
+        UserError: the folder of lessons cannot be used.
+    """
+    folder = context.data / context.site.lessons.folder
+    with lock(folder):
+        RecorderLoop(context, folder).run()
+
+
+def lock(folder: Path) -> BinaryIO:
+    """Make the folder and keep every other recorder out of it for as long as the file is open.
+
+    Raises:
+        UserError: it cannot be made or written to, or another recorder is at work there.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        file = (folder / _LOCK).open("wb")
+    except OSError as error:
+        raise UserError(f"folder of lessons {folder}: {error.strerror}; correct lessons.folder or its permissions") from error
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        file.close()
+        raise UserError(f"another recorder works in {folder}; end that KineBox or change lessons.folder") from error
+    return file
+
+
+class RecorderLoop:
+    """The loop of `main`, with everything from outside passed in."""
+
+    def __init__(self, context: ProcessContext, folder: Path) -> None:
+        self._context = context
+        self._bus = context.bus
+        self._machine = origin.machine()
+        self._rejected = 0
+        self._reporter = HealthReporter(context.name, context.bus, context.resources)
+        # Listening first, so that a wish that is uttered while lessons are recovered is not lost.
+        self._subscription = self._bus.subscribe(topics.fusion_log(), topics.lesson_request(), keep=KEEP)
+        self._recorder = Recorder(folder, context.site.lessons, self._header, recover(folder, context.start_ns))
+
+    def run(self) -> None:
+        """Take what comes; once a second, ask fusion for its log while recording, and say how things are."""
+        self._bus.declare_alive(topics.alive(self._context.name))
+        try:
+            while not self._context.stop.is_set():
+                delivery = self._subscription.receive(_ROUND_S)
+                if delivery is not None:
+                    self._receive(delivery)
+                if self._reporter.due():
+                    self._second_passed()
+        finally:
+            self._recorder.close()
+            self._subscription.close()
+
+    def _receive(self, delivery: Delivery) -> None:
+        try:
+            if delivery.topic == topics.fusion_log():
+                self._recorder.take(codec.decode(delivery.payload, FusionLog))
+                return
+            wish = codec.decode(delivery.payload, LessonRequest)
+        except codec.CodecError as error:
+            if self._rejected == 0:
+                log.warning("message refused", topic=delivery.topic, reason=str(error))
+            self._rejected += 1
+            return
+        if wish.action == "start":
+            self._recorder.start(wish.title)
+        else:
+            self._recorder.stop()
+        self._second_passed()  # Who wished it is waiting to hear that it was done.
+
+    def _second_passed(self) -> None:
+        request = self._recorder.look_after()
+        if request is not None:
+            self._bus.publish(topics.segment_request(), codec.encode(request))
+        troubles = [self._recorder.trouble, f"{self._rejected} messages could not be read" if self._rejected else ""]
+        reason = "; ".join(trouble for trouble in troubles if trouble)
+        self._rejected = 0
+        self._reporter.report("degraded" if reason else "ok", reason, recorder=self._recorder.health())
+
+    def _header(self, title: str) -> LessonHeader:
+        wall_ns, monotonic_ns = clocks_ns()
+        return LessonHeader(
+            title=title,
+            kinebox=kinebox_version(),
+            machine=self._machine,
+            preset=self._context.site.fusion.preset,
+            site_toml=render(self._context.site),
+            rig_toml=encode_rig(self._context.rig, "the calibration in use when the lesson was recorded").decode(),
+            started_ns=monotonic_ns,
+            wall_minus_monotonic_ns=wall_ns - monotonic_ns,
+            run_ns=self._context.start_ns,
+        )

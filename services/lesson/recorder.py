@@ -1,0 +1,203 @@
+"""The recorder without its bus: lessons begin and end, parts of fusion's log are written, trouble is told.
+
+A lesson ends when a person says so, when the box ends, and when the disk is full or broken: then it is finished as well as it can
+be, and the box goes on. A lesson that was cut short by the recorder's own death is gone on with, after a gap.
+"""
+
+import datetime as dt
+import re
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import structlog
+
+from models.config.site import LessonsConfig
+from models.messages.health import RecorderHealth
+from models.messages.lesson import FusionLog, SegmentRequest
+from services.lesson.following import Following
+from services.lesson.lesson_file import LessonWriter
+from services.lesson.lesson_header import LessonHeader
+from services.support.machine import free_disk_mb
+
+AUTOMATIC_TITLE = "Recorded automatically"
+SILENT_NS = 5_000_000_000
+"""If nothing came from fusion for so long, the recording is standing still."""
+RETRY_NS = 30_000_000_000
+"""An automatic recording that had to end is tried again after this."""
+
+log = structlog.get_logger()
+
+_NAME_LENGTH = 40
+
+
+@dataclass
+class _Running:
+    writer: LessonWriter
+    following: Following
+    heard_ns: int
+
+
+class Recorder:
+    """One lesson after the other.
+
+    Args:
+        folder: of the lessons; it exists.
+        config: of the site.
+        header: the header of a lesson of this title that begins now.
+        unfinished: a lesson to go on with; None if there is none.
+        clock_ns: CLOCK_MONOTONIC.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        config: LessonsConfig,
+        header: Callable[[str], LessonHeader],
+        unfinished: LessonWriter | None = None,
+        clock_ns: Callable[[], int] = time.monotonic_ns,
+    ) -> None:
+        self._folder = folder
+        self._config = config
+        self._header = header
+        self._clock_ns = clock_ns
+        self._automatic_ns: int | None = clock_ns() if config.automatic else None
+        self._ended = ""
+        self._running: _Running | None = None
+        if unfinished is not None:
+            self._begin(unfinished, "the recorder was started again")
+
+    def start(self, title: str) -> None:
+        """Begin a lesson, unless one is being recorded."""
+        if self._running is not None:
+            return
+        free_mb = free_disk_mb(self._folder)
+        if free_mb < self._config.least_free_mb:
+            self._trouble(f"no lesson was begun: {self._too_full(free_mb)}")
+            return
+        header = self._header(title)
+        try:
+            writer = self._create(header)
+        except OSError as error:
+            self._trouble(f"no lesson was begun: {error.strerror} at {self._folder}; make room or correct lessons.folder")
+            return
+        self._ended = ""
+        self._begin(writer)
+        log.info("lesson begins", lesson=_name(writer), title=title)
+
+    def stop(self) -> None:
+        """End the lesson, if one is being recorded; in this run no automatic one begins any more."""
+        self._automatic_ns = None
+        self._ended = ""
+        self._finish("")
+
+    def close(self) -> None:
+        """The box ends: the lesson is finished."""
+        self._finish("")
+
+    def take(self, part: FusionLog) -> None:
+        """A part of fusion's log was heard."""
+        running, now_ns = self._running, self._clock_ns()
+        if running is None:
+            return
+        accepted = running.following.hear(part, now_ns)
+        if accepted is None:
+            return
+        running.heard_ns = now_ns
+        try:
+            running.writer.append(part, accepted.gap)
+        except OSError as error:
+            self._finish(f"{error.strerror}; make room on the disk or replace it")
+            return
+        if accepted.gap:
+            log.warning("gap in the lesson", lesson=_name(running.writer), reason=accepted.gap)
+
+    def look_after(self) -> SegmentRequest | None:
+        """Once a second: watch the disk, begin what is automatic. Returns what fusion shall be asked for, if anything."""
+        if self._running is None and self._automatic_ns is not None and self._clock_ns() >= self._automatic_ns:
+            self.start(AUTOMATIC_TITLE)
+        if self._running is None:
+            return None
+        free_mb = free_disk_mb(self._folder)
+        if free_mb < self._config.least_free_mb:
+            self._finish(self._too_full(free_mb))
+            return None
+        return self._running.following.request
+
+    @property
+    def trouble(self) -> str:
+        """What is wrong, in one line; empty if nothing is."""
+        running = self._running
+        if running is None:
+            return self._ended
+        if self._clock_ns() - running.heard_ns > SILENT_NS:
+            return f"lesson {_name(running.writer)} stands still: nothing is heard of fusion"
+        return ""
+
+    def health(self) -> RecorderHealth:
+        """What is being recorded."""
+        running = self._running
+        if running is None:
+            return RecorderHealth(lesson="", title="", recorded_s=0.0, size_mb=0.0, gaps=0)
+        writer = running.writer
+        return RecorderHealth(
+            lesson=_name(writer),
+            title=writer.header.title,
+            recorded_s=writer.recorded_s,
+            size_mb=writer.size / 1e6,
+            gaps=writer.gaps,
+        )
+
+    def _begin(self, writer: LessonWriter, gap: str = "") -> None:
+        now_ns = self._clock_ns()
+        self._running = _Running(writer, Following(SegmentRequest(now_ns), gap), heard_ns=now_ns)
+
+    def _finish(self, why: str) -> None:
+        """End the lesson; `why` it had to end, if nobody wished it."""
+        running, self._running = self._running, None
+        if running is None:
+            return
+        writer = running.writer
+        name = _name(writer)
+        if why:
+            self._trouble(f"lesson {name} ended: {why}")
+        try:
+            writer.finish()
+        except OSError as error:
+            writer.close()
+            self._trouble(
+                f"lesson {name} ended: {error.strerror}; make room on the disk, and the next start of KineBox completes it"
+            )
+        log.info("lesson ends", lesson=name, seconds=round(writer.recorded_s, 1), mb=round(writer.size / 1e6, 2), gaps=writer.gaps)
+
+    def _trouble(self, text: str) -> None:
+        if text != self._ended:
+            log.warning("not recording", reason=text)
+        self._ended = text
+        if self._automatic_ns is not None:
+            self._automatic_ns = self._clock_ns() + RETRY_NS
+
+    def _too_full(self, free_mb: float) -> str:
+        least_mb = self._config.least_free_mb
+        return f"{free_mb:.0f} MB are left on the disk, lessons.least_free_mb is {least_mb}; remove lessons that are not needed"
+
+    def _create(self, header: LessonHeader) -> LessonWriter:
+        taken = {path.name.split(".")[0] for path in self._folder.iterdir()}
+        return LessonWriter.create(self._folder, lesson_name(header, taken), header)
+
+
+def lesson_name(header: LessonHeader, taken: set[str]) -> str:
+    """A new name for a lesson: when it began, in local time, and what people call it; of letters, digits and hyphens."""
+    began = dt.datetime.fromtimestamp(header.started_s, tz=dt.UTC).astimezone()
+    words = re.sub(r"[\W_]+", "-", header.title.lower())[:_NAME_LENGTH].strip("-")
+    name = f"{began:%Y-%m-%d-%H%M}{'-' if words else ''}{words}"
+    number = 2
+    unique = name
+    while unique in taken:
+        unique, number = f"{name}-{number}", number + 1
+    return unique
+
+
+def _name(writer: LessonWriter) -> str:
+    return writer.path.name.split(".")[0]
