@@ -1,67 +1,75 @@
-"""One stream of what all processes say: everything in `logs/kinebox.log` of the data folder, and on the console what matters.
+"""One stream of what all processes say: everything in the log's files, and on the console what matters.
 
-The file has one JSON object a line, for programs. The console (stderr) is for people, at a terminal or in the log of a service: it
-has the warnings and errors of the processes and all that the supervisor says, as plain lines with the time of day.
+The files have one JSON object a line, for programs and `kinebox logs`; their form is in `services.logs.record`. The console
+(stderr) is for people, at a terminal or in the log of a service: it has the warnings and errors of the processes and all that the
+supervisor says, as plain lines with the time of day.
 """
 
 import datetime as dt
-import logging
-import logging.handlers
 import sys
+import time
+from collections import defaultdict
 from pathlib import Path
 from typing import Any, TextIO
 
 import msgspec
 
+from models.config.site import LogsConfig
 from models.errors import USER_ERROR_PREFIX
-from models.process import EDGE
+from services.logs.files import LATEST
+from services.logs.readable import details, printable, speaker
+from services.logs.record import LogRecord, record_of
+from services.logs.writer import LogWriter
+from services.supervisor.traceback_lines import TracebackLines
 
-_FILE_BYTES = 8 * 2**20
-_OLD_FILES = 3
 _LOUD = frozenset({"warning", "error", "critical"})
-_NOT_SHOWN = frozenset({"time", "level", "process", "event", "exception"})
-
-
-class _LogFile(logging.handlers.RotatingFileHandler):
-    def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802 - the name is the library's
-        """Say nothing: the library would print a traceback for every line."""
+_SUPERVISOR = "supervisor"
+_DEFAULTS = LogsConfig()
 
 
 class Journal:
     """Writes lines. A console that is gone or a disc that is full or read-only must not stop the box.
 
-    A file that cannot be opened is said once on the console, and the box runs on without one: then the console gets everything.
+    While nothing can be kept, which is said once, the console gets everything.
 
     Args:
-        folder: where the file is kept; it is made if it is missing.
+        folder: where the files are kept; it is made if it is missing.
         console: where a person looks.
+        config: how much is kept.
     """
 
-    def __init__(self, folder: Path, console: TextIO | None = None) -> None:
-        self.path = folder / "kinebox.log"
+    def __init__(self, folder: Path, console: TextIO | None = None, config: LogsConfig = _DEFAULTS) -> None:
+        self.path = folder / LATEST
         self._console = console or sys.stderr
-        self._file: _LogFile | None = None
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            self._file = _LogFile(self.path, maxBytes=_FILE_BYTES, backupCount=_OLD_FILES)
-        except OSError as error:
-            self.say(f"nothing is kept in {self.path}: {error.strerror}; free or mend the disc, then start anew", level="warning")
+        self._tracebacks: dict[str, TracebackLines] = defaultdict(TracebackLines)
+        self._writer = LogWriter(folder, int(config.max_file_mb * 1e6), config.max_files)
+        self._problem = ""
+        self._tell_problem()
 
     def child_said(self, process: str, line: str) -> None:
-        """Pass on a line of a process; one that is no JSON (a traceback, a library's print) is wrapped as an error."""
-        entry = _parse(line)
-        if entry is None:
-            entry = _entry(process, "error", line.removeprefix(USER_ERROR_PREFIX))
-            line = msgspec.json.encode(entry).decode()
-        self._write(line)
-        if self._file is None or entry.get("level") in _LOUD:
-            self._show(_readable(entry))
+        """Pass on a line of a process. The lines of a traceback become one record; another one that is no JSON becomes an error."""
+        said = _parse(line)
+        if said is not None:
+            self._end_traceback(process)
+            self._keep(record_of(said, process, _now()))
+        elif line.startswith(USER_ERROR_PREFIX) or not self._tracebacks[process].takes(line, time.monotonic()):
+            self._keep(record_of({"event": line.removeprefix(USER_ERROR_PREFIX), "level": "error"}, process, _now()))
 
-    def say(self, event: str, *, level: str = "info", **details: str) -> None:
+    def settle(self) -> None:
+        """Write down the tracebacks that are whole by now; to be called now and then."""
+        for process, traceback in self._tracebacks.items():
+            if traceback.is_over(time.monotonic()):
+                self._end_traceback(process)
+
+    def say(self, event: str, *, level: str = "info", **fields: str) -> None:
         """A line of the supervisor's own; a person always sees it."""
-        entry = _entry("supervisor", level, event) | details
-        self._write(msgspec.json.encode(entry).decode())
-        self._show(_readable(entry))
+        for process in self._tracebacks:
+            self._end_traceback(process)
+        self._keep(record_of(fields | {"event": event, "level": level}, _SUPERVISOR, _now()), shown=True)
+
+    def note(self, event: str, **fields: Any) -> None:
+        """A line of the supervisor's own for those who read the log afterwards."""
+        self._keep(record_of(fields | {"event": event}, _SUPERVISOR, _now()))
 
     def welcome(self, block: str) -> None:
         """Lines meant for a person only, on stdout."""
@@ -73,48 +81,51 @@ class Journal:
 
     def close(self) -> None:
         """Close the file."""
-        if self._file is not None:
-            self._file.close()
+        for process in self._tracebacks:
+            self._end_traceback(process)
+        self._writer.close()
 
-    def _write(self, line: str) -> None:
-        if self._file is not None:
-            self._file.handle(logging.LogRecord("kinebox", logging.INFO, "", 0, line, None, None))
+    def _end_traceback(self, process: str) -> None:
+        if (ended := self._tracebacks[process].end()) is not None:
+            event, whole = ended
+            self._keep(record_of({"event": event, "level": "critical", "exception": whole}, process, _now()))
 
-    def _show(self, line: str) -> None:
+    def _keep(self, record: LogRecord, *, shown: bool = False) -> None:
+        self._writer.write(record)
+        self._tell_problem()
+        if shown or self._problem or record.level in _LOUD:
+            self._show(record)
+
+    def _tell_problem(self) -> None:
+        problem, before = self._writer.problem, self._problem
+        self._problem = problem
+        if problem and not before:
+            event = f"nothing is kept in {self.path}: {problem}; free or mend the disc"
+            self._show(record_of({"event": event, "level": "warning"}, _SUPERVISOR, _now()))
+        elif before and not problem:
+            self._show(record_of({"event": f"what is said is kept in {self.path} again"}, _SUPERVISOR, _now()))
+
+    def _show(self, record: LogRecord) -> None:
+        clock = record.time.astimezone().strftime("%H:%M:%S")
+        said = " ".join((printable(record.event), *details(record)))
+        lines = [f"{clock}  {printable(speaker(record.process)):12}  {said}".rstrip()]
+        if record.exception and self._problem:
+            lines += record.exception.splitlines()
+        elif record.exception:
+            lines[0] += " ('kinebox logs' has the traceback)"
         try:
-            self._console.write(line + "\n")
+            self._console.write("\n".join(lines) + "\n")
             self._console.flush()
         except OSError:
             pass
 
 
-def _entry(process: str, level: str, event: str) -> dict[str, Any]:
-    now = dt.datetime.now(dt.UTC)
-    return {"process": process, "level": level, "event": event, "time": now.isoformat().replace("+00:00", "Z")}
+def _now() -> dt.datetime:
+    return dt.datetime.now(dt.UTC)
 
 
 def _parse(line: str) -> dict[str, Any] | None:
     try:
         return msgspec.json.decode(line, type=dict[str, Any]) if line.startswith("{") else None
-    except msgspec.DecodeError:
+    except (msgspec.DecodeError, RecursionError):
         return None
-
-
-def _readable(entry: dict[str, Any]) -> str:
-    details = " ".join(f"{key}={value}" for key, value in entry.items() if key not in _NOT_SHOWN)
-    line = f"{_clock(entry.get('time'))}  {_speaker(entry.get('process')):12}  {entry.get('event', '')} {details}".rstrip()
-    return "\n".join([line, *([str(entry["exception"])] if "exception" in entry else [])])
-
-
-def _clock(time: object) -> str:
-    """The local time of day of an ISO time; now, if the line has none."""
-    try:
-        return dt.datetime.fromisoformat(str(time)).astimezone().strftime("%H:%M:%S")
-    except ValueError:
-        return dt.datetime.now().astimezone().strftime("%H:%M:%S")
-
-
-def _speaker(process: object) -> str:
-    name = str(process or "?")
-    camera = name.removeprefix(f"{EDGE}-")
-    return name if camera == name else f"camera {camera}"

@@ -3,6 +3,9 @@
 import io
 import logging
 import os
+import re
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,9 +20,11 @@ from models.messages.health import Health
 from models.process import Resources
 from services.bus.memory import MemoryRouter
 from services.supervisor.child import ChildSpec, name_of
+from services.supervisor.journal import Journal
 from services.supervisor.page import addresses
 from services.support import logs
 from services.support.health import HealthReporter, ResourceMeter
+from tests.installed import ROOT
 
 
 @pytest.fixture
@@ -67,7 +72,9 @@ def test_our_logs_and_the_libraries_come_out_alike(stream: io.StringIO) -> None:
     ours, theirs = (msgspec.json.decode(line) for line in stream.getvalue().splitlines())
     assert (ours["process"], ours["level"], ours["event"], ours["rate_hz"]) == ("edge-a", "info", "ours", 15)
     assert (theirs["process"], theirs["level"], theirs["event"]) == ("edge-a", "warning", "theirs 7")
-    assert {"time"} <= ours.keys() & theirs.keys()
+    assert list(ours) == ["time", "process", "level", "event", "rate_hz"]
+    assert list(theirs) == ["time", "process", "level", "event"]
+    assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z", ours["time"])
 
 
 def test_a_traceback_stays_within_one_line(stream: io.StringIO) -> None:
@@ -78,6 +85,30 @@ def test_a_traceback_stays_within_one_line(stream: io.StringIO) -> None:
         structlog.get_logger().exception("it failed")
     (line,) = stream.getvalue().splitlines()
     assert "RuntimeError: broken" in msgspec.json.decode(line)["exception"]
+
+
+ENDINGS = {
+    "an exception": ("raise RuntimeError('broken\\nin two')", "RuntimeError: broken"),
+    "an exception in a thread": (
+        "import threading; t = threading.Thread(target=lambda: 1 / 0, name='loop'); t.start(); t.join()",
+        "ZeroDivisionError: division by zero",
+    ),
+    "native code": ("import ctypes; ctypes.string_at(0)", "Fatal Python error: Segmentation fault"),
+}
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_what_ends_a_process_is_one_record_in_the_log(tmp_path: Path, ending: str) -> None:
+    program, event = ENDINGS[ending]
+    program = f"from services.support import logs; logs.configure('edge-a'); logs.log_what_ends_us()\n{program}"
+    said = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False).stderr
+    journal = Journal(tmp_path, io.StringIO())
+    for line in said.splitlines():
+        journal.child_said("edge-a", line)
+    journal.close()
+    (entry,) = (msgspec.json.decode(line) for line in journal.path.read_text().splitlines())
+    assert (entry["process"], entry["level"], entry["event"]) == ("edge-a", "critical", event)
+    assert 'File "<string>", line 2' in entry["exception"]
 
 
 def test_the_address_of_one_host_is_given_as_it_is() -> None:

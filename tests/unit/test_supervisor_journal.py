@@ -3,6 +3,7 @@ import re
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import pytest
@@ -42,7 +43,9 @@ def test_people_get_plain_lines_in_their_own_time_and_are_not_bothered_with_info
     journal.child_said("edge-cam02", WARNING)
     assert console.getvalue() == "05:04:05  camera cam02  refused topic=gym/x\n"
     journal.close()
-    assert journal.path.read_text().splitlines() == [INFO, WARNING]
+    first, second = (msgspec.json.decode(line) for line in journal.path.read_text().splitlines())
+    assert (first["event"], first["rate_hz"], second["event"], second["topic"]) == ("governor", 15, "refused", "gym/x")
+    assert list(first) == ["time", "process", "level", "event", "rate_hz"]
 
 
 def test_the_file_has_every_line_as_json(tmp_path: Path) -> None:
@@ -67,7 +70,7 @@ def test_a_line_with_no_time_that_can_be_read_is_shown_all_the_same(tmp_path: Pa
     journal = Journal(tmp_path, console)
     journal.child_said("fusion", f'{{"level": "error", "event": "lost", "time": {time}}}')
     journal.close()
-    assert without_time(console) == ["?             lost"]
+    assert without_time(console) == ["fusion        lost"]
 
 
 @pytest.mark.parametrize("line", ["{not json", '["a list"]', "Traceback (most recent call last):", "\ufffd\ufffd"])
@@ -92,7 +95,7 @@ def test_a_log_file_that_cannot_be_opened_is_said_once_and_does_not_stop_the_box
     if fault == "folder":
         (tmp_path / "logs").write_text("a file where the folder should be")
     else:
-        (tmp_path / "logs" / "kinebox.log").mkdir(parents=True)
+        (tmp_path / "logs" / "kinebox-000001.log").mkdir(parents=True)
     console = io.StringIO()
     journal = Journal(tmp_path / "logs", console)
     journal.child_said("fusion", INFO)
@@ -101,3 +104,93 @@ def test_a_log_file_that_cannot_be_opened_is_said_once_and_does_not_stop_the_box
     lines = without_time(console)
     assert lines[0].startswith(f"supervisor    nothing is kept in {journal.path}: ")
     assert lines[1:] == ["fusion        governor rate_hz=15", "supervisor    still here"]
+
+
+TRACEBACK = """\
+Traceback (most recent call last):
+  File "fusion.py", line 3, in main
+    step(state)
+ValueError: broken
+During handling of the above exception, another exception occurred:
+Traceback (most recent call last):
+  File "fusion.py", line 7, in main
+    end()
+RuntimeError: crashed
+as ordered
+"""
+
+
+def entries_of(journal: Journal) -> list[dict[str, Any]]:
+    return [msgspec.json.decode(line) for line in journal.path.read_text().splitlines()]
+
+
+@pytest.mark.parametrize("ending", ["a log line", "the supervisor's word", "the end", "silence"])
+def test_a_printed_traceback_is_one_record_whatever_ends_it(tmp_path: Path, ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    now_s = time.monotonic()
+    console = io.StringIO()
+    journal = Journal(tmp_path, console)
+    monkeypatch.setattr(time, "monotonic", lambda: now_s)
+    for line in TRACEBACK.splitlines():
+        journal.child_said("fusion", line)
+        journal.child_said("edge-a", INFO)
+        journal.settle()
+    assert "fusion" not in console.getvalue()
+    if ending == "a log line":
+        journal.child_said("fusion", INFO)
+    elif ending == "the supervisor's word":
+        journal.say("fusion is started again")
+    elif ending == "silence":
+        now_s += 1.0
+        journal.settle()
+    if ending == "silence":
+        assert "crashed" in console.getvalue()
+    journal.close()
+    found = [entry for entry in entries_of(journal) if "exception" in entry]
+    assert [(entry["process"], entry["level"], entry["event"]) for entry in found] == [
+        ("fusion", "critical", "RuntimeError: crashed")
+    ]
+    assert found[0]["exception"] == TRACEBACK.rstrip()
+    assert list(found[0])[-1] == "exception"
+    shown = next(line for line in console.getvalue().splitlines() if "crashed" in line)
+    assert shown.endswith("fusion        RuntimeError: crashed ('kinebox logs' has the traceback)")
+
+
+def test_an_abort_in_native_code_is_one_record_that_begins_with_its_cause(tmp_path: Path) -> None:
+    journal = Journal(tmp_path, io.StringIO())
+    said = 'Fatal Python error: Segmentation fault\nCurrent thread 0x0a (most recent call first):\n  File "x.py", line 1 in f'
+    for line in said.splitlines():
+        journal.child_said("edge-a", line)
+    journal.close()
+    (entry,) = entries_of(journal)
+    assert (entry["event"], entry["exception"]) == ("Fatal Python error: Segmentation fault", said)
+
+
+def test_what_a_process_says_for_people_is_no_part_of_its_traceback(tmp_path: Path) -> None:
+    journal = Journal(tmp_path, io.StringIO())
+    journal.child_said("edge-a", "Traceback (most recent call last):")
+    journal.child_said("edge-a", "kinebox: camera 'a': film.avi is missing")
+    journal.close()
+    assert "camera 'a': film.avi is missing" in [entry["event"] for entry in entries_of(journal)]
+
+
+def test_while_nothing_can_be_kept_people_get_the_tracebacks_too(tmp_path: Path) -> None:
+    (tmp_path / "logs").write_text("a file where the folder should be")
+    console = io.StringIO()
+    journal = Journal(tmp_path / "logs", console)
+    for line in TRACEBACK.splitlines():
+        journal.child_said("fusion", line)
+    journal.close()
+    assert '  File "fusion.py", line 7, in main' in console.getvalue()
+
+
+def test_a_log_that_can_be_kept_again_is_said(tmp_path: Path) -> None:
+    (tmp_path / "logs").write_text("a file where the folder should be")
+    console = io.StringIO()
+    journal = Journal(tmp_path / "logs", console)
+    journal.child_said("fusion", INFO)
+    (tmp_path / "logs").unlink()
+    journal.child_said("fusion", INFO)
+    journal.close()
+    assert without_time(console)[-1] == f"supervisor    what is said is kept in {journal.path} again"
+    told, kept = entries_of(journal)
+    assert (told["event"], told["lines"], kept["event"]) == ("lines of the log could not be kept", 1, "governor")

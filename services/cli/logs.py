@@ -1,0 +1,137 @@
+"""`kinebox logs`: look at the log, follow it, and pack a part of it to be sent."""
+
+import datetime as dt
+import os
+import re
+import sys
+import time
+import tomllib
+from collections import deque
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import tomlkit
+
+from models.errors import UserError
+from services.cli.duration import parse_duration
+from services.logs.export import export
+from services.logs.files import STARTED, log_folder, log_numbers
+from services.logs.query import Query
+from services.logs.readable import as_json, readable
+from services.logs.reader import Line, LogReader
+from services.logs.record import LEVELS, time_text
+from services.logs.redaction import redacted
+from services.support.site_files import read_file
+
+_LOOK_AGAIN_S = 0.2
+_AGO = re.compile(r"[\dhms]*[hms]")
+
+
+def show(data: Path, query: Query, most: int, *, json: bool, follow: bool) -> None:
+    """Print the last `most` lines that are wanted; then, if asked to, every further one as it is written."""
+    reader = LogReader(log_folder(data))
+    if not follow:
+        _require_log(data)
+    # What is wanted of a damaged line depends on the line before it, so one selection goes over the past and what follows.
+    past = deque(query.select(_whole_log(reader, torn=not follow)), maxlen=most)
+    _print(past, json=json)
+    while follow:
+        _print(query.select(reader.poll()), json=json)
+        time.sleep(_LOOK_AGAIN_S)
+
+
+def pack(file: Path, data: Path, query: Query, site: Path | None) -> str:
+    """Write the wanted lines and what helps to understand them into a zip; what there is to say of it.
+
+    Args:
+        file: the zip.
+        data: the data folder.
+        query: the wanted lines.
+        site: the site file; the one that the box was last started with if it is None, and none if that is gone.
+    """
+    _require_log(data)
+    site = site or _site_of_last_start(data)
+    toml = None if site is None else _site_without_secrets(site)
+    lines = query.select(_whole_log(LogReader(log_folder(data)), torn=True))
+    manifest = export(file, lines, toml, _told(query), dt.datetime.now(dt.UTC))
+    included = f"the site file {site}" if site is not None else "no site file (name it with --site)"
+    return f"{file} holds {manifest['lines']['count']} lines and {included}; no pictures, keypoints or passwords\n"
+
+
+def query_of(since: str | None, level: str, processes: list[str] | None, text: str) -> Query:
+    """A filter as a person writes it.
+
+    Raises:
+        UserError: an option says nothing.
+    """
+    if level.lower() not in LEVELS:
+        raise UserError(f"--level: '{level}' is no level; write one of {', '.join(LEVELS)}")
+    start = None if since is None else parse_since(since, dt.datetime.now(dt.UTC))
+    return Query(start, level.lower(), tuple(processes or ()), text)
+
+
+def parse_since(text: str, now: dt.datetime) -> dt.datetime:
+    """A time as a person writes it: how long ago (90s, 10m, 1h30m), or a date and time, of this machine's zone if it names none.
+
+    Raises:
+        UserError: it is neither.
+    """
+    try:
+        if _AGO.fullmatch(text):
+            return now - dt.timedelta(seconds=parse_duration(text, "--since"))
+        return dt.datetime.fromisoformat(text).astimezone(dt.UTC)
+    except (ValueError, OverflowError) as error:
+        raise UserError(
+            f"--since: '{text}' is no time; write 90s, 10m or 1h30m, or a date and time like 2026-11-22T10:00"
+        ) from error
+
+
+def _whole_log(reader: LogReader, *, torn: bool) -> Iterator[Line]:
+    try:
+        yield from reader.poll()
+        if torn:
+            yield from reader.torn()
+    except OSError as error:
+        raise UserError(f"the log cannot be read: {error.strerror} ({error.filename})") from error
+
+
+def _require_log(data: Path) -> None:
+    folder = log_folder(data)
+    try:
+        found = log_numbers(folder)
+    except OSError as error:
+        raise UserError(f"the log in {folder} cannot be read: {error.strerror}; correct --data or its rights") from error
+    if not found:
+        raise UserError(f"there is no log in {folder}; 'kinebox run' writes it there, or name another folder with --data")
+
+
+def _print(lines: Iterable[Line], *, json: bool) -> None:
+    colour = sys.stdout.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
+    for line in lines:
+        text = as_json(line) if json else readable(line, colour=colour)
+        sys.stdout.write(text + "\n")
+    sys.stdout.flush()
+
+
+def _site_of_last_start(data: Path) -> Path | None:
+    sites = [
+        str(line.record.fields.get("site", ""))
+        for line in _whole_log(LogReader(log_folder(data)), torn=False)
+        if line.record is not None and line.record.event == STARTED
+    ]
+    file = Path(sites[-1]) if sites and sites[-1] else None
+    return file if file is not None and file.is_file() else None
+
+
+def _site_without_secrets(file: Path) -> str:
+    """The site file's values. It need not be a good one: that may be why somebody wants help."""
+    try:
+        values = tomllib.loads(read_file(file, "site file").decode())
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise UserError(f"site file {file}: {error}; correct it, or name another with --site") from error
+    return tomlkit.dumps(redacted(values))
+
+
+def _told(query: Query) -> dict[str, object]:
+    since = None if query.since is None else time_text(query.since)
+    return {"since": since, "level": query.level, "processes": list(query.processes), "text": query.text}

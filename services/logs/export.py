@@ -1,0 +1,154 @@
+"""Packs a part of the log for a coach or a technician: what happened, on what, with which versions and which site file.
+
+The file is a zip of `log.jsonl` (the lines, as `kinebox logs --json` prints them), `site.toml` (if it is given; every value, the
+defaults included) and `manifest.json`. What `services.logs.redaction` names is taken out of all of them; pictures and keypoints
+are in none of them.
+"""
+
+import datetime as dt
+import hashlib
+import os
+import platform
+import zipfile
+from collections.abc import Iterable
+from importlib.metadata import PackageNotFoundError, requires, version
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import psutil
+
+from models.config.site import SITE_VERSION
+from models.errors import UserError
+from services.logs.readable import as_json
+from services.logs.reader import Line
+from services.logs.record import encode, record_of, time_text
+from services.logs.redaction import redacted, redacted_text
+
+FORMAT_VERSION = 1
+_NAME_END = " <>=!~;["
+
+
+def export(file: Path, lines: Iterable[Line], site_toml: str | None, query: dict[str, Any], now: dt.datetime) -> dict[str, Any]:
+    """Write the zip; what its manifest says.
+
+    Args:
+        file: a name that is not taken.
+        lines: the wanted ones.
+        site_toml: the site file as TOML without comments, redacted already; None if there is none.
+        query: by what the lines were chosen, for the manifest.
+        now: the time.
+
+    Raises:
+        UserError: the file exists or cannot be written; nothing is left of it.
+    """
+    temporary = file.with_name(f".{file.name}.{os.getpid()}.tmp")
+    try:
+        if file.exists():
+            raise UserError(f"{file} exists already; choose another name or delete it")
+        with temporary.open("xb") as stream:
+            manifest = _pack(zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED), lines, site_toml, query, now)
+            stream.flush()
+            os.fsync(stream.fileno())
+        temporary.replace(file)
+    except OSError as error:
+        raise UserError(f"{file} cannot be written: {error.strerror}; choose another place or make room") from error
+    finally:
+        temporary.unlink(missing_ok=True)
+    return manifest
+
+
+def _pack(
+    archive: zipfile.ZipFile, lines: Iterable[Line], site_toml: str | None, query: dict[str, Any], now: dt.datetime
+) -> dict[str, Any]:
+    manifest: dict[str, Any] = {
+        "format": "kinebox-logs",
+        "format_version": FORMAT_VERSION,
+        "made": time_text(now),
+        "query": query,
+        "versions": _versions(),
+        "machine": _machine(),
+    }
+    hashes = {}
+    with archive:
+        with archive.open("log.jsonl", "w", force_zip64=True) as stream:
+            digest, counts = hashlib.sha256(), _Counts()
+            for line in lines:
+                said = _without_secrets(line).encode() + b"\n"
+                stream.write(said)
+                digest.update(said)
+                counts.add(line)
+        manifest["lines"] = counts.told()
+        hashes["log.jsonl"] = digest.hexdigest()
+        if site_toml is not None:
+            archive.writestr("site.toml", site_toml)
+            hashes["site.toml"] = hashlib.sha256(site_toml.encode()).hexdigest()
+        manifest["sha256"] = hashes
+        archive.writestr("manifest.json", msgspec.json.format(msgspec.json.encode(manifest), indent=2))
+    return manifest
+
+
+def _without_secrets(line: Line) -> str:
+    record = line.record
+    if record is None:
+        return as_json(line._replace(raw=redacted_text(line.raw.decode(errors="backslashreplace")).encode()))
+    said = {"event": redacted_text(record.event), "exception": redacted_text(record.exception), **redacted(record.fields)}
+    return encode(record_of(said | {"level": record.level}, record.process, record.time)).decode().rstrip("\n")
+
+
+class _Counts:
+    """What the manifest tells of the lines."""
+
+    def __init__(self) -> None:
+        self._levels: dict[str, int] = {}
+        self._first: dt.datetime | None = None
+        self._last: dt.datetime | None = None
+
+    def add(self, line: Line) -> None:
+        level = "damaged" if line.record is None else line.record.level
+        self._levels[level] = self._levels.get(level, 0) + 1
+        if line.record is not None:
+            self._first = self._first or line.record.time
+            self._last = line.record.time
+
+    def told(self) -> dict[str, Any]:
+        ends = {"first": self._first, "last": self._last}
+        return {"count": sum(self._levels.values()), **self._levels} | {
+            name: time_text(time) for name, time in ends.items() if time is not None
+        }
+
+
+def _versions() -> dict[str, str]:
+    """Of KineBox, Python, the site file's schema and every package that KineBox asks for and finds."""
+    found = {"kinebox": version("kinebox"), "python": platform.python_version(), "site_schema": str(SITE_VERSION)}
+    for requirement in requires("kinebox") or ():
+        name = requirement
+        for end in _NAME_END:
+            name = name.partition(end)[0]
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue  # An extra that is not installed.
+    return found
+
+
+def _machine() -> dict[str, Any]:
+    """What it is, not whose: no name, no address, no serial number."""
+    return {
+        "system": platform.platform(),
+        "architecture": platform.machine(),
+        "processor": _processor(),
+        "cores": os.cpu_count(),
+        "granted_cores": len(os.sched_getaffinity(0)),
+        "memory_mb": psutil.virtual_memory().total // 2**20,
+        "up_since": time_text(dt.datetime.fromtimestamp(psutil.boot_time(), dt.UTC)),
+    }
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return ""
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith(("model name", "Model"))]
+    return names[0] if names else ""

@@ -1,0 +1,33 @@
+"""The files of the log: numbered, each written once from beginning to end and never renamed, so that a reader cannot miss one."""
+
+import re
+from pathlib import Path
+
+LATEST = "kinebox.log"
+"""A link to the file that is written now, for people and their tools."""
+STARTED = "the box starts"
+"""The event of the record with which every run begins; its field `site` is the site file."""
+_NAME = re.compile(r"kinebox-(\d{6,})\.log")
+
+
+def log_folder(data: Path) -> Path:
+    """Where the log is kept."""
+    return data / "logs"
+
+
+def log_path(folder: Path, number: int) -> Path:
+    """The file of a number."""
+    return folder / f"kinebox-{number:06}.log"
+
+
+def log_numbers(folder: Path) -> list[int]:
+    """The files that there are, oldest first; none if there is no folder.
+
+    Raises:
+        OSError: the folder cannot be read.
+    """
+    try:
+        names = [entry.name for entry in folder.iterdir()]
+    except FileNotFoundError:
+        return []
+    return sorted(int(found[1]) for name in names if (found := _NAME.fullmatch(name)))
