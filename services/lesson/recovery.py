@@ -68,6 +68,10 @@ def reopen(path: Path) -> LessonWriter:
     try:
         header = read_header(path, file)
         contents = survey(file)
+        if not contents.chunks:
+            file.close()
+            path.unlink()
+            return LessonWriter.create(path.parent, path.name.removesuffix(PART_SUFFIX), header)
         if path.stat().st_size - contents.end > _LARGEST_TAIL:
             shutil.copyfile(path, path.with_name(path.name + DAMAGED_SUFFIX))
         file.seek(contents.end)

@@ -1,0 +1,148 @@
+"""Laws of damaged lessons: whatever is cut off or changed, what was safe before comes back, and nothing false is ever read."""
+
+import copy
+from collections.abc import Iterator
+from functools import cache
+from io import BytesIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from models.errors import UserError
+from models.messages.lesson import FusionLog
+from services.lesson.layout import PART_SUFFIX, SUFFIX
+from services.lesson.lesson_file import Contents, LessonWriter
+from services.lesson.lesson_reader import LessonPart, open_lesson
+from services.lesson.recovery import DAMAGED_SUFFIX, recover, reopen, survey
+from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
+
+PARTS = (*(part(BEGIN_NS, k) for k in range(3)), *(part(BEGIN_NS + 9 * SECOND_NS, k) for k in range(3)))
+
+
+class Written(NamedTuple):
+    """A finished lesson as bytes, and what it held after its beginning and after every part."""
+
+    data: bytes
+    stages: list[Contents]
+
+
+@cache
+def written() -> Written:
+    with TemporaryDirectory() as folder:
+        writer = LessonWriter.create(Path(folder), "lesson", header())
+        stages = [copy.deepcopy(writer._contents)]
+        for index, item in enumerate(PARTS):
+            writer.append(item, "a part was lost" if index == 3 else "")
+            stages.append(copy.deepcopy(writer._contents))
+        return Written(writer.finish().read_bytes(), stages)
+
+
+@pytest.fixture(scope="module")
+def folder() -> Iterator[Path]:
+    with TemporaryDirectory() as name:
+        yield Path(name)
+
+
+def as_logged(parts: list[LessonPart]) -> list[FusionLog]:
+    return [FusionLog(item.segment_ns, item.sequence, item.entries) for item in parts]
+
+
+@pytest.mark.slow
+def test_whatever_a_crash_cuts_off_every_part_that_was_safe_is_found_again() -> None:
+    data, stages = written()
+    for cut in range(stages[0].end, len(data)):
+        safe = max((stage for stage in stages if stage.end <= cut), key=lambda stage: stage.end)
+        assert survey(BytesIO(data[:cut])) == safe, f"cut at byte {cut}"
+
+
+@settings(max_examples=60, deadline=None)
+@given(cut=st.integers(0, len(written().data)))
+def test_a_recovered_lesson_is_a_whole_file_and_can_be_gone_on_with(folder: Path, cut: int) -> None:
+    data, stages = written()
+    left = folder / f"lesson{PART_SUFFIX}"
+    left.write_bytes(data[:cut])
+    safe = sum(stage.end <= cut for stage in stages[1:])
+    try:
+        writer = reopen(left)
+    except UserError:
+        assert cut < stages[0].end
+        return
+    writer.append(part(BEGIN_NS + 99 * SECOND_NS, 0), "the recorder was started again")
+    with open_lesson(writer.finish()) as lesson:
+        parts = list(lesson.parts())
+    assert as_logged(parts) == [*PARTS[:safe], part(BEGIN_NS + 99 * SECOND_NS, 0)]
+    assert parts[-1].gap == "the recorder was started again"
+
+
+@settings(max_examples=300, deadline=None)
+@given(at=st.integers(0, len(written().data) - 1), flip=st.integers(1, 255))
+def test_a_changed_byte_is_noticed_or_does_not_matter(folder: Path, at: int, flip: int) -> None:
+    data = bytearray(written().data)
+    data[at] ^= flip
+    path = folder / f"changed{SUFFIX}"
+    path.write_bytes(data)
+    read = []
+    try:
+        with open_lesson(path) as lesson:
+            for item in lesson.parts():
+                read.append(item)
+                assert as_logged(read) == list(PARTS[: len(read)])
+    except UserError:
+        return
+    assert len(read) == len(PARTS)
+    assert at >= written().stages[-1].end, "a change of the data was not noticed"
+
+
+@settings(max_examples=150, deadline=None)
+@given(at=st.integers(0, len(written().data) - 1), flip=st.integers(1, 255), cut=st.integers(0, 400))
+def test_recovery_of_a_changed_file_keeps_all_before_the_change(folder: Path, at: int, flip: int, cut: int) -> None:
+    data, stages = bytearray(written().data), written().stages
+    data[at] ^= flip
+    left = folder / f"changed{PART_SUFFIX}"
+    left.write_bytes(data[: len(data) - cut])
+    try:
+        writer = reopen(left)
+    except UserError:
+        assert at < stages[0].end
+        return
+    with open_lesson(writer.finish()) as lesson:
+        parts = as_logged(list(lesson.parts()))
+    assert parts == list(PARTS[: len(parts)])
+    assert len(parts) >= sum(stage.end <= min(at, len(data) - cut) for stage in stages[1:])
+
+
+def test_at_the_start_every_lesson_that_was_left_is_finished_but_the_one_of_this_run(tmp_path: Path) -> None:
+    data, stages = written()
+    for name, run_ns in (("of-before", 1), ("of-this-run", 2)):
+        writer = LessonWriter.create(tmp_path, name, header(run_ns=run_ns))
+        writer.append(PARTS[0])
+        writer.close()
+    (tmp_path / f"cut{PART_SUFFIX}").write_bytes(data[: stages[2].end + 3])
+    (tmp_path / f"no-lesson{PART_SUFFIX}").write_bytes(b"nothing")
+    goes_on = recover(tmp_path, run_ns=2)
+    assert goes_on is not None
+    goes_on.close()
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        f"cut{SUFFIX}",
+        f"no-lesson{PART_SUFFIX}{DAMAGED_SUFFIX}",
+        f"of-before{SUFFIX}",
+        f"of-this-run{PART_SUFFIX}",
+    ]
+    with open_lesson(tmp_path / f"cut{SUFFIX}") as lesson:
+        assert as_logged(list(lesson.parts())) == list(PARTS[:2])
+
+
+def test_of_a_file_that_is_damaged_in_its_middle_the_whole_is_kept(tmp_path: Path) -> None:
+    name = f"large{PART_SUFFIX}"
+    data, stages = written()
+    changed = bytearray(data[: stages[-1].end])
+    changed[stages[2].end + 100] ^= 1
+    (tmp_path / name).write_bytes(changed + bytes(3 * 2**20))
+    assert recover(tmp_path, run_ns=0) is None
+    assert (tmp_path / f"{name}{DAMAGED_SUFFIX}").read_bytes()[: len(changed)] == changed
+    with open_lesson(tmp_path / f"large{SUFFIX}") as lesson:
+        assert as_logged(list(lesson.parts())) == list(PARTS[:2])

@@ -1,0 +1,102 @@
+"""The list of lessons: what is in the folder, however the index was lost, broken or out of date."""
+
+import os
+import sqlite3
+from pathlib import Path
+
+import pytest
+
+from services.lesson import index
+from services.lesson.index import LessonIndex
+from services.lesson.layout import PART_SUFFIX
+from services.lesson.lesson_file import LessonWriter
+from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
+
+
+def record(folder: Path, name: str, parts: int = 3, *, finish: bool = True) -> Path:
+    writer = LessonWriter.create(folder, name, header(f"title of {name}"))
+    for k in range(parts):
+        segment, gap = (BEGIN_NS, "") if k < 2 else (BEGIN_NS + 9 * SECOND_NS, "a part was lost")
+        writer.append(part(segment, k % 2), gap)
+    if finish:
+        return writer.finish()
+    writer.close()
+    return writer.path
+
+
+def test_a_lesson_is_listed_with_its_figures(tmp_path: Path) -> None:
+    file = record(tmp_path, "a")
+    (row,) = LessonIndex(tmp_path).lessons()
+    assert (row.lesson, row.title, row.state, row.problem) == ("a", "title of a", "finished", "")
+    assert (row.gaps, row.segments, row.bytes) == (1, 2, file.stat().st_size)
+    assert row.seconds == pytest.approx(9.5, abs=0.01)
+    assert row.started_s == pytest.approx(1_700_000_005.0)
+
+
+def test_files_that_come_go_and_change_are_followed(tmp_path: Path) -> None:
+    lessons = LessonIndex(tmp_path)
+    assert lessons.lessons() == []
+    first, second = record(tmp_path, "a"), record(tmp_path, "b", parts=1)
+    assert {row.lesson for row in lessons.lessons()} == {"a", "b"}
+    first.unlink()
+    second.unlink()
+    record(tmp_path, "b", parts=3)
+    (row,) = lessons.lessons()
+    assert (row.lesson, row.segments) == ("b", 2)
+
+
+def test_a_file_that_is_unchanged_is_not_read_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    record(tmp_path, "a")
+    known = LessonIndex(tmp_path).lessons()
+    monkeypatch.setattr(index, "open_lesson", None)
+    assert LessonIndex(tmp_path).lessons() == known
+
+
+@pytest.mark.parametrize("content", [b"", b"no database at all" * 100, b"SQLite format 3\x00" + bytes(5000)])
+def test_a_broken_index_is_made_anew_from_the_files(tmp_path: Path, content: bytes) -> None:
+    record(tmp_path, "a")
+    known = LessonIndex(tmp_path).lessons()
+    (tmp_path / index.NAME).write_bytes(content)
+    assert LessonIndex(tmp_path).lessons() == known
+    assert LessonIndex(tmp_path).lessons() == known
+
+
+def test_an_index_of_another_version_is_made_anew(tmp_path: Path) -> None:
+    record(tmp_path, "a")
+    with sqlite3.connect(tmp_path / index.NAME) as connection:
+        connection.execute("CREATE TABLE lessons (otherwise TEXT)")
+        connection.execute("PRAGMA user_version = 99")
+    connection.close()
+    assert [row.lesson for row in LessonIndex(tmp_path).lessons()] == ["a"]
+
+
+def test_the_lesson_that_is_being_recorded_is_listed_as_unfinished(tmp_path: Path) -> None:
+    file = record(tmp_path, "a", finish=False)
+    os.utime(file, ns=(0, 1_700_000_065 * SECOND_NS))
+    (row,) = LessonIndex(tmp_path).lessons()
+    assert (row.title, row.state) == ("title of a", "unfinished")
+    assert row.seconds == pytest.approx(60.0)
+
+
+def test_a_file_that_cannot_be_read_is_listed_with_its_problem(tmp_path: Path) -> None:
+    file = record(tmp_path, "a")
+    file.write_bytes(file.read_bytes()[:-40])
+    (tmp_path / f"b{PART_SUFFIX}").write_bytes(b"nothing")
+    damaged = {row.lesson: row for row in LessonIndex(tmp_path).lessons()}
+    assert {row.state for row in damaged.values()} == {"damaged"}
+    assert "is damaged" in damaged["a"].problem
+    assert "is no lesson" in damaged["b"].problem
+
+
+def test_where_no_index_can_be_written_the_lessons_are_listed_all_the_same(tmp_path: Path) -> None:
+    record(tmp_path, "a")
+    (tmp_path / index.NAME).mkdir()
+    assert [row.lesson for row in LessonIndex(tmp_path).lessons()] == ["a"]
+
+
+def test_the_index_is_kept_so_that_reading_and_writing_do_not_wait_for_one_another(tmp_path: Path) -> None:
+    record(tmp_path, "a")
+    LessonIndex(tmp_path).lessons()
+    connection = sqlite3.connect(tmp_path / index.NAME)
+    assert connection.execute("PRAGMA journal_mode").fetchone() == ("wal",)
+    connection.close()

@@ -1,0 +1,221 @@
+"""The recorder: lessons begin and end as people wish, and as the disk allows."""
+
+import errno
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from models.config.site import LessonsConfig
+from models.messages.lesson import SegmentRequest
+from services.lesson import recorder as module
+from services.lesson.layout import PART_SUFFIX, SUFFIX
+from services.lesson.lesson_file import LessonWriter
+from services.lesson.lesson_header import LessonHeader
+from services.lesson.lesson_reader import open_lesson
+from services.lesson.recorder import RETRY_NS, SILENT_NS, Recorder, lesson_name
+from services.lesson.recovery import recover
+from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
+
+
+class Room:
+    """A recorder with a clock and a disk of the test's own."""
+
+    def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch, *, automatic: bool = False) -> None:
+        self.now_ns = BEGIN_NS
+        self.free_mb = 10_000.0
+        self.folder = folder
+        monkeypatch.setattr(module, "free_disk_mb", lambda _folder: self.free_mb)
+        self.recorder = self.started(automatic=automatic)
+
+    def started(self, unfinished: LessonWriter | None = None, *, automatic: bool = False) -> Recorder:
+        config = LessonsConfig(automatic=automatic)
+        return Recorder(self.folder, config, self._header, unfinished, lambda: self.now_ns)
+
+    def record(self, parts: int) -> None:
+        request = self.recorder.look_after()
+        assert request is not None
+        for k in range(parts):
+            self.now_ns += SECOND_NS // 2
+            self.recorder.take(part(request.t_ns + 1, k))
+
+    def files(self, suffix: str) -> list[str]:
+        return sorted(path.name for path in self.folder.iterdir() if path.name.endswith(suffix))
+
+    def _header(self, title: str) -> LessonHeader:
+        return header(title)
+
+
+@pytest.fixture
+def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Room]:
+    room = Room(tmp_path, monkeypatch)
+    yield room
+    room.recorder.close()
+
+
+@pytest.fixture
+def automatic_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Room]:
+    room = Room(tmp_path, monkeypatch, automatic=True)
+    yield room
+    room.recorder.close()
+
+
+def test_nothing_is_recorded_and_fusion_is_asked_for_nothing_before_somebody_wishes_it(room: Room) -> None:
+    assert room.recorder.look_after() is None
+    room.recorder.take(part(BEGIN_NS + 1, 0))
+    assert room.recorder.health().lesson == ""
+    assert list(room.folder.iterdir()) == []
+
+
+def test_a_lesson_is_recorded_from_start_to_stop(room: Room) -> None:
+    room.recorder.start("7b, throwing")
+    room.record(parts=4)
+    health = room.recorder.health()
+    assert (health.title, health.gaps) == ("7b, throwing", 0)
+    assert health.recorded_s == pytest.approx(2.0, abs=0.1)
+    assert health.size_mb > 0
+    room.recorder.stop()
+    assert room.recorder.look_after() is None
+    (name,) = room.files(SUFFIX)
+    with open_lesson(room.folder / name) as lesson:
+        assert lesson.summary().parts == 4
+    assert name == f"{health.lesson}{SUFFIX}"
+
+
+def test_a_second_start_changes_nothing(room: Room) -> None:
+    room.recorder.start("one")
+    before = room.recorder.health()
+    room.recorder.start("two")
+    assert room.recorder.health() == before
+
+
+def test_the_same_request_is_repeated_so_that_fusion_goes_on(room: Room) -> None:
+    room.recorder.start("one")
+    room.record(parts=2)
+    room.now_ns += 5 * SECOND_NS
+    assert room.recorder.look_after() == SegmentRequest(BEGIN_NS)
+
+
+def test_a_lost_part_is_a_gap_in_the_file_and_a_new_segment_is_asked_for(room: Room) -> None:
+    room.recorder.start("one")
+    room.record(parts=2)
+    room.recorder.take(part(BEGIN_NS + 1, 3))
+    request = room.recorder.look_after()
+    assert request == SegmentRequest(room.now_ns)
+    room.record(parts=1)
+    assert room.recorder.health().gaps == 1
+    room.recorder.stop()
+    (name,) = room.files(SUFFIX)
+    with open_lesson(room.folder / name) as lesson:
+        assert [item.gap for item in lesson.parts()] == ["", "", "a part of fusion's log was lost"]
+
+
+def test_when_fusion_is_not_heard_the_recorder_says_that_it_stands_still(room: Room) -> None:
+    room.recorder.start("one")
+    room.record(parts=1)
+    assert room.recorder.trouble == ""
+    room.now_ns += SILENT_NS + 1
+    assert "stands still: nothing is heard of fusion" in room.recorder.trouble
+    room.record(parts=1)
+
+
+def test_a_disk_that_fills_up_ends_the_lesson_cleanly_and_says_so(room: Room) -> None:
+    room.recorder.start("one")
+    room.record(parts=3)
+    room.free_mb = 499.0
+    assert room.recorder.look_after() is None
+    assert "499 MB are left on the disk, lessons.least_free_mb is 500" in room.recorder.trouble
+    (name,) = room.files(SUFFIX)
+    with open_lesson(room.folder / name) as lesson:
+        assert lesson.summary().parts == 3
+    room.recorder.start("two")
+    assert "no lesson was begun" in room.recorder.trouble
+    room.free_mb = 501.0
+    room.recorder.start("three")
+    assert room.recorder.trouble == ""
+    assert room.recorder.health().title == "three"
+
+
+def test_a_write_error_ends_the_lesson_and_what_was_safe_stays_readable(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
+    room.recorder.start("one")
+    room.record(parts=3)
+
+    def fail(*_: object) -> None:
+        raise OSError(errno.EIO, "Input/output error")
+
+    with monkeypatch.context() as broken:
+        broken.setattr("services.lesson.lesson_file.os.fsync", fail)
+        room.recorder.take(part(BEGIN_NS + 1, 3))
+    assert "Input/output error" in room.recorder.trouble
+    assert room.recorder.health().lesson == ""
+    assert room.files(PART_SUFFIX)
+    assert recover(room.folder, run_ns=0) is None
+    (name,) = room.files(SUFFIX)
+    with open_lesson(room.folder / name) as lesson:
+        assert lesson.summary().parts == 3
+
+
+def test_a_folder_that_cannot_be_written_to_is_named(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    monkeypatch.setattr(LessonWriter, "create", refuse)
+    room.recorder.start("one")
+    assert "no lesson was begun: Read-only file system" in room.recorder.trouble
+    assert room.recorder.health().lesson == ""
+
+
+def test_a_lesson_that_the_recorders_death_cut_short_is_gone_on_with(room: Room) -> None:
+    room.recorder.start("one")
+    room.record(parts=2)
+    name = room.recorder.health().lesson
+    # The process is killed here, its file closed by the kernel; then it is started again by the supervisor.
+    assert room.recorder._running is not None
+    room.recorder._running.writer.close()
+    room.now_ns += 3 * SECOND_NS
+    room.recorder = room.started(recover(room.folder, header().run_ns))
+    assert room.recorder.health().lesson == name
+    assert room.recorder.look_after() == SegmentRequest(room.now_ns)
+    room.record(parts=2)
+    assert room.recorder.health().gaps == 1
+    room.recorder.close()
+    with open_lesson(room.folder / f"{name}{SUFFIX}") as lesson:
+        assert [item.gap for item in lesson.parts()] == ["", "", "the recorder was started again", ""]
+
+
+def test_an_automatic_recorder_begins_by_itself_and_stops_for_good_when_told_to(automatic_room: Room) -> None:
+    room = automatic_room
+    room.record(parts=1)
+    assert room.recorder.health().title == module.AUTOMATIC_TITLE
+    room.recorder.stop()
+    room.now_ns += 2 * RETRY_NS
+    assert room.recorder.look_after() is None
+
+
+def test_an_automatic_recorder_waits_until_there_is_room_again(automatic_room: Room) -> None:
+    room = automatic_room
+    room.free_mb = 1.0
+    assert room.recorder.look_after() is None
+    room.free_mb = 10_000.0
+    assert room.recorder.look_after() is None
+    room.now_ns += RETRY_NS
+    assert room.recorder.look_after() is not None
+    assert room.recorder.trouble == ""
+
+
+@pytest.mark.parametrize(
+    ("title", "ending"),
+    [
+        ("7b, throwing", "-7b-throwing"),
+        ("", ""),
+        ("../../etc", "-etc"),
+        ("Würfe: 3. Stunde!", "-würfe-3-stunde"),
+        ("a" * 80, "-" + "a" * 40),
+    ],
+)
+def test_a_lessons_name_is_a_safe_file_name_that_people_recognise(title: str, ending: str) -> None:
+    name = lesson_name(header(title), set())
+    assert name[:11].count("-") == 3
+    assert name[15:] == ending
+    assert "/" not in name
+    assert lesson_name(header(title), {name, f"{name}-2"}) == f"{name}-3"
