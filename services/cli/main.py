@@ -112,6 +112,20 @@ def config_migrate(
 
 
 @app.command()
+def doctor(
+    site: Annotated[
+        Path | None, typer.Option("--site", help="The site file, to examine its cameras and its running box, too.")
+    ] = None,
+    data: DataFolder = Path("build"),
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", show_default=False)] = False,
+) -> None:
+    """Say what is wrong with this machine, a site or its running box, and what to do; exit code 1 if something is."""
+    from services.cli.doctor import doctor as examine  # noqa: PLC0415
+
+    raise typer.Exit(examine(site, data, as_json))
+
+
+@app.command()
 def version() -> None:
     """Print the version."""
     _print_version(wanted=True)

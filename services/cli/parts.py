@@ -1,8 +1,8 @@
 """Finding the parts of the box by their entry points, so that no part imports another.
 
-Two groups: `kinebox.processes` (a callable that takes a `ProcessContext` and returns when it shall stop) and `kinebox.checks` (a
-callable `check(site, rig, data)` that raises `UserError` if its part could not work). If several installed packages offer a
-process of one name, the first on the import path is taken.
+Three groups: `kinebox.processes` (a callable that takes a `ProcessContext` and returns when it shall stop), `kinebox.checks` (a
+callable `check(site, rig, data)` that raises `UserError` if its part could not work) and `kinebox.inspections` (see
+`models.inspection`). If several installed packages offer one of the same name, the first on the import path is taken.
 """
 
 import sys
@@ -11,10 +11,12 @@ from importlib.metadata import EntryPoint, entry_points
 from typing import cast
 
 from models.errors import UserError
+from models.inspection import Inspection
 from models.process import Check, ProcessContext
 
 PROCESSES = "kinebox.processes"
 CHECKS = "kinebox.checks"
+INSPECTIONS = "kinebox.inspections"
 
 Process = Callable[[ProcessContext], None]
 
@@ -44,7 +46,16 @@ def load_process(entry: EntryPoint) -> Process:
 
 def load_checks() -> list[Check]:
     """What the parts want to have checked before anything is started, by name."""
+    return [cast(Check, entry.load()) for entry in _first_of_each_name(CHECKS)]
+
+
+def load_inspections() -> list[Inspection]:
+    """What the parts look at when a person wants to know what is wrong, by name."""
+    return [cast(Inspection, entry.load()) for entry in _first_of_each_name(INSPECTIONS)]
+
+
+def _first_of_each_name(group: str) -> list[EntryPoint]:
     found: dict[str, EntryPoint] = {}
-    for entry in entry_points(group=CHECKS):
+    for entry in entry_points(group=group):
         found.setdefault(entry.name, entry)
-    return [cast(Check, found[name].load()) for name in sorted(found)]
+    return [found[name] for name in sorted(found)]

@@ -10,11 +10,11 @@ _ANYWHERE = frozenset({"0.0.0.0", "::"})  # noqa: S104 - compared with, not list
 _TIMEOUT_S = 0.2
 
 
-def answers(config: TabletConfig) -> bool:
+def answers(config: TabletConfig, timeout_s: float = _TIMEOUT_S) -> bool:
     """Whether a request for the page gets an answer."""
     host = "127.0.0.1" if config.host in _ANYWHERE else config.host
     try:
-        with socket.create_connection((host, config.port), _TIMEOUT_S) as connection:
+        with socket.create_connection((host, config.port), timeout_s) as connection:
             connection.sendall(b"HEAD / HTTP/1.0\r\nHost: localhost\r\n\r\n")
             return connection.recv(5) == b"HTTP/"
     except OSError:

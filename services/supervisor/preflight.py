@@ -32,7 +32,7 @@ def check_everything(site_file: Path, data: Path, checks: Iterable[Check]) -> Si
 
 def require_ports(site: Site) -> None:
     """Raise UserError unless the page and the bus can be listened on at the same time, as they will be."""
-    bus_host, bus_port = _host_and_port(site.bus.endpoint)
+    bus_host, bus_port = split_endpoint(site.bus.endpoint)
     bus = _Port(bus_host, bus_port, "port of the bus", "bus.endpoint")
     with _Port(site.tablet.host, site.tablet.port, "port of the page", "tablet.port").hold():
         try:
@@ -45,6 +45,14 @@ def require_ports(site: Site) -> None:
     # Somebody else's, or the page's own?
     bus.hold().close()
     raise UserError(f"port {bus.number} is both the page's and the bus's; change tablet.port or bus.endpoint in the site file")
+
+
+def split_endpoint(endpoint: str) -> tuple[str, int]:
+    """Host and port of the bus; UserError if the port is none."""
+    host, _, port = endpoint.removeprefix("tcp/").rpartition(":")
+    if not 0 < int(port) < 2**16:
+        raise UserError(f"port of the bus: {port} is no port (1 to 65535); change bus.endpoint in the site file")
+    return host.strip("[]"), int(port)
 
 
 class _Port(NamedTuple):
@@ -68,10 +76,3 @@ class _Port(NamedTuple):
                 f"{self.what}: {self.number} on {self.host} cannot be used ({error.strerror}); stop what uses it, "
                 f"perhaps another KineBox, or change {self.key} in the site file"
             ) from error
-
-
-def _host_and_port(endpoint: str) -> tuple[str, int]:
-    host, _, port = endpoint.removeprefix("tcp/").rpartition(":")
-    if not 0 < int(port) < 2**16:
-        raise UserError(f"port of the bus: {port} is no port (1 to 65535); change bus.endpoint in the site file")
-    return host.strip("[]"), int(port)

@@ -1,0 +1,88 @@
+"""What the edge needs, looked at closely for `kinebox doctor`: every network and every camera's file, byte by byte.
+
+The doctor finds this by the entry point group `kinebox.inspections`. See `edge.check` for what is checked before every start.
+"""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from importlib.util import find_spec
+from pathlib import Path
+
+from edge.cameras.shape import VideoShape, require_calibrated_size, require_equal_lengths
+from edge.check import NETWORKS, check_video
+from edge.footage.index import INDEX_NAME, Index
+from edge.perception.network_file import read_network_file
+from models.camera.rig import Rig
+from models.config.site import CameraConfig, Site
+from models.errors import UserError
+from models.inspection import Inspected
+from models.networks.installed import FILE_NAME, FOLDER, decode_installed
+
+
+def inspect(site: Site | None, rig: Rig | None, data: Path) -> list[Inspected]:
+    """Look at all networks, and at the files of a site's cameras.
+
+    Args:
+        site: the site file; None looks at the networks alone.
+        rig: calibration of its cameras; None compares no sizes.
+        data: the data folder.
+    """
+    found = list(_networks(data))
+    if site is not None:
+        videos: dict[str, tuple[VideoShape, float]] = {}
+        found += [_camera(camera, rig, data, videos) for camera in site.cameras]
+        found += _lengths(videos)
+        found += _provider(site)
+    return found
+
+
+def _networks(data: Path) -> Iterator[Inspected]:
+    try:
+        listed = decode_installed((data / FOLDER / FILE_NAME).read_bytes()).networks
+    except (OSError, UserError):
+        # Every network fails alike; the first says why.
+        yield _inspected("networks", "their list was read", lambda: read_network_file(NETWORKS[0], data))
+        return
+    for name in sorted({*NETWORKS, *listed}):
+        look = partial(read_network_file, name, data)
+        yield _inspected(f"network {name}", "its hash is compared with the installation's", look)
+
+
+def _camera(camera: CameraConfig, rig: Rig | None, data: Path, videos: dict[str, tuple[VideoShape, float]]) -> Inspected:
+    path = data / camera.path
+
+    def look() -> None:
+        videos[camera.name] = (shape := check_video(path, camera.name), camera.rate_hz)
+        index = Index.read(path.parent)
+        if index is not None and path.name in index.files and path.name in index.damaged(path.parent):
+            raise UserError(
+                f"camera '{camera.name}': {path} is damaged (not the hash installed); "
+                f"delete {path.parent / INDEX_NAME} and run `make footage`"
+            )
+        if rig is not None and camera.name in rig.names:
+            require_calibrated_size(camera.name, shape, rig.cameras[rig.index(camera.name)].size_px)
+
+    return _inspected(f"camera '{camera.name}'", f"{path} was read whole", look)
+
+
+def _lengths(videos: dict[str, tuple[VideoShape, float]]) -> list[Inspected]:
+    if len(videos) < 2:
+        return []
+    return [_inspected("length of the videos", "their pictures are counted", lambda: require_equal_lengths(videos))]
+
+
+def _provider(site: Site) -> list[Inspected]:
+    if site.inference.provider != "openvino" or find_spec("openvino") is not None:
+        return []
+    fault = 'inference.provider = "openvino", but OpenVINO is not installed; install the extra of that name or set it to "cpu"'
+    return [Inspected("execution provider", "the package was looked for", fault)]
+
+
+def _inspected(what: str, known_by: str, look: Callable[[], object]) -> Inspected:
+    try:
+        look()
+    except UserError as error:
+        return Inspected(what, known_by, str(error))
+    except OSError as error:
+        return Inspected(what, known_by, f"{what} cannot be read ({error}); correct its rights or its disk")
+    return Inspected(what, known_by)

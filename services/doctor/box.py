@@ -1,0 +1,217 @@
+"""A running box: which process is missing, hangs or was given up, which camera is silent or behind, and what else is off.
+
+Pure: everything was gathered before.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from models.config.site import Site
+from models.messages.health import MachineHealth, Restarts
+from models.process import EDGE, ROUTER, process_name
+from services.doctor.agreement import judge_agreement
+from services.doctor.cameras import judge_camera
+from services.doctor.finding import Examined, Fact, Finding, Level
+from services.doctor.listen import Heard
+from services.doctor.machine import machine_finding
+from services.doctor.processes import RunningBox
+from services.support.machine_troubles import machine_troubles
+
+OFTEN = 3
+RECENT_NS = 600 * 1_000_000_000
+SLOW_SHARE = 0.8
+"""Below this share of the figures wished for, movement is not smooth."""
+SUPERVISOR = "supervisor"
+_LISTENED = "the bus was listened to"
+
+
+@dataclass(frozen=True)
+class BoxFacts:
+    """What was gathered of a running box.
+
+    Attributes:
+        site: the site file.
+        log: its log file.
+        running: its processes, as the machine has them.
+        expected: the names of all processes that a box of this site has, the supervisor too.
+        heard: what it said.
+        version: of the KineBox that the doctor belongs to.
+        now_ns: CLOCK_MONOTONIC.
+    """
+
+    site: Site
+    log: str
+    running: RunningBox
+    expected: tuple[str, ...]
+    heard: Heard
+    version: str
+    now_ns: int
+
+
+def judge_box(box: BoxFacts) -> Examined:
+    """Everything wrong with it, and how it runs."""
+    if box.heard.bus == "silent":
+        return Examined((*_stopped(box), *_router(box), *_page(box)), _facts(box))
+    stopped = _stopped(box)
+    findings = [
+        *stopped,
+        *(finding for finding in _processes(box) if finding.where not in {each.where for each in stopped}),
+        *_restarts(box),
+        *_page(box),
+        *_cameras(box),
+        *_own_words(box),
+        *_figures(box),
+        *_machine(box),
+        *_version(box),
+    ]
+    return Examined(tuple(findings), _facts(box))
+
+
+def _stopped(box: BoxFacts) -> list[Finding]:
+    table = dict(box.running.processes)
+    if box.running.supervisor is not None:
+        table[SUPERVISOR] = [box.running.supervisor]
+    findings = []
+    for name, processes in table.items():
+        for process in processes:
+            if process.stopped:
+                words = f"{name} (process {process.pid}) is stopped and does nothing, by SIGSTOP or a debugger"
+                remedy = f"let it go on (kill -CONT {process.pid}), or end it (kill -9 {process.pid}) and the box starts it anew"
+                findings.append(Finding("fault", name, words, "the machine's table of processes", remedy))
+    return findings
+
+
+def _router(box: BoxFacts) -> Iterator[Finding]:
+    """The bus does not answer: nobody else can be heard, so nobody else can be judged."""
+    here = box.running.processes.get(ROUTER)
+    if here is None:
+        words = f"{ROUTER} is missing, and with it the bus: no figure is made and no process can be heard"
+        remedy = f"look for '{ROUTER} is given up' in {box.log} for the reason, mend it, and start the box anew"
+        yield Finding("fault", ROUTER, words, "the machine's table of processes", remedy)
+    elif not any(process.stopped for process in here):
+        words = f"{ROUTER} (process {here[0].pid}) hangs: the bus does not answer, so no other process can be heard"
+        remedy = f"wait some seconds: the box restarts it; if it stays so, end it (kill -9 {here[0].pid})"
+        yield Finding("fault", ROUTER, words, "the bus was asked, and nothing came", remedy)
+
+
+def _processes(box: BoxFacts) -> Iterator[Finding]:
+    given_up = {each.process for each in _told(box) if each.given_up}
+    for name in box.expected:
+        if name in given_up:
+            continue
+        if name not in box.heard.alive:
+            words = f"{name} is missing: it is not on the bus"
+            remedy = f"wait some seconds, it may be starting; if it stays so, read {box.log} and start the box anew"
+            yield Finding("fault", name, words, _LISTENED, remedy)
+        elif name not in box.heard.healths:
+            words = f"{name} hangs: it is on the bus and said nothing for {box.heard.seconds:.0f} s"
+            remedy = f"wait some seconds: the box restarts it; if it stays so, read {box.log} and start the box anew"
+            yield Finding("fault", name, words, _LISTENED, remedy)
+
+
+def _told(box: BoxFacts) -> tuple[Restarts, ...]:
+    supervisor = box.heard.healths.get(SUPERVISOR)
+    return supervisor.supervisor.restarts if supervisor is not None and supervisor.supervisor is not None else ()
+
+
+def _restarts(box: BoxFacts) -> Iterator[Finding]:
+    for each in _told(box):
+        ago_s = max(box.now_ns - each.last_ns, 0) * 1e-9
+        if each.given_up:
+            words = f"{each.process} is given up and does not run any more: {each.given_up}"
+            remedy = f"read what it said last (grep '\"{each.process}\"' {box.log}), mend that, and start the box anew"
+            yield Finding("fault", each.process, words, "the supervisor says so", remedy)
+        elif each.count >= OFTEN or ago_s * 1e9 < RECENT_NS:
+            times = "once" if each.count == 1 else f"{each.count} times"
+            words = f"{each.process} was started again {times}; {_ago(ago_s)} ago it {each.reason}"
+            remedy = f"read what it said before (grep '\"{each.process}\"' {box.log}); once is no harm"
+            yield Finding("warning", each.process, words, "the supervisor counts", remedy)
+
+
+def _page(box: BoxFacts) -> list[Finding]:
+    if box.heard.page == "answers":
+        return []
+    words = f"the page at port {box.site.tablet.port} does not answer"
+    return [Finding("fault", "tablet", words, "it was asked over HTTP", f"wait some seconds; if it stays so, read {box.log}")]
+
+
+def _cameras(box: BoxFacts) -> Iterator[Finding]:
+    for camera in box.site.cameras:
+        health = box.heard.healths.get(process_name(EDGE, camera.name))
+        if health is not None and health.state != "failed":  # then the supervisor tells why
+            yield from judge_camera(camera.name, health, box.now_ns)
+    yield from judge_agreement(box.heard.agreements, (camera.name for camera in box.site.cameras), box.site.calibration)
+
+
+def _own_words(box: BoxFacts) -> Iterator[Finding]:
+    """What processes say of themselves; the supervisor's and the cameras' words are in what was found before."""
+    for name, health in box.heard.healths.items():
+        told = any(each.process == name and each.given_up for each in _told(box))
+        if health.state == "ok" or told or name == SUPERVISOR or name.startswith(f"{EDGE}-"):
+            continue
+        # Who is not heard was found missing or hung already.
+        reasons = [reason for reason in health.reason.split("; ") if not reason.startswith("no word from")]
+        for reason in reasons:
+            level: Level = "fault" if health.state == "failed" else "warning"
+            yield Finding(level, name, f"{name} says: {reason}", "its health on the bus", _remedy_for(reason, box))
+
+
+def _remedy_for(reason: str, box: BoxFacts) -> str:
+    if "epoch" in reason:
+        return "the cameras count their films' loops differently: start the box anew; if it stays so, cut the films to one length"
+    return f"see what else is found here, and read {box.log}"
+
+
+def _figures(box: BoxFacts) -> Iterator[Finding]:
+    fusion = box.heard.healths.get(ROUTER)
+    if fusion is None or fusion.fusion is None:
+        return
+    told = fusion.fusion
+    if told.pupil == "found" and told.live_hz < SLOW_SHARE * box.site.fusion.live_hz:
+        words = f"only {told.live_hz:.0f} figures a second are made, of {box.site.fusion.live_hz:.0f} that the site file asks for"
+        remedy = "end other programs on this machine, or lower inference.cpu_target in the site file"
+        yield Finding("warning", ROUTER, words, "fusion counts", remedy)
+    for topic, count in box.heard.unreadable.items():
+        words = f"{count} messages on {topic} could not be read"
+        remedy = "look for a process of another version or a program that writes there; end it"
+        yield Finding("warning", "bus", words, _LISTENED, remedy)
+
+
+def _machine(box: BoxFacts) -> Iterator[Finding]:
+    machine = _machine_of(box)
+    for trouble in machine_troubles(machine) if machine is not None else ():
+        yield machine_finding(trouble.code, trouble.words, trouble.remedy)
+
+
+def _machine_of(box: BoxFacts) -> MachineHealth | None:
+    supervisor = box.heard.healths.get(SUPERVISOR)
+    return supervisor.machine if supervisor is not None else None
+
+
+def _version(box: BoxFacts) -> Iterator[Finding]:
+    supervisor = box.heard.healths.get(SUPERVISOR)
+    if supervisor is None or supervisor.supervisor is None or supervisor.supervisor.version == box.version:
+        return
+    words = f"the box that runs is KineBox {supervisor.supervisor.version}, but this command is {box.version}"
+    yield Finding(
+        "warning", "version", words, "the supervisor tells its version", "end the box and start it anew with this version"
+    )
+
+
+def _facts(box: BoxFacts) -> tuple[Fact, ...]:
+    supervisor = box.heard.healths.get(SUPERVISOR)
+    if supervisor is None or supervisor.supervisor is None:
+        return (Fact("running box", f"{len(box.running.processes)} processes of it are there"),)
+    up = _ago(max(box.now_ns - supervisor.supervisor.started_ns, 0) * 1e-9)
+    rate = f"{box.heard.live / box.heard.seconds:.0f} figures a second" if box.heard.seconds else "not listened to"
+    return (
+        Fact(
+            "running box", f"version {supervisor.supervisor.version}, up for {up}, {len(box.heard.healths)} processes speak, {rate}"
+        ),
+    )
+
+
+def _ago(seconds: float) -> str:
+    if seconds < 120:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.0f} h"

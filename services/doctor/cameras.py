@@ -1,0 +1,38 @@
+"""One camera of a running box, judged as the page judges it, in words for a technician. Pure."""
+
+from models.messages.health import Health
+from services.doctor.finding import Finding, Level
+from services.tablet.camera_state import HeardHealth, Presence, camera_status
+from services.tablet.messages import CameraReason, CameraStatus
+
+_REMEDIES: dict[CameraReason, str] = {
+    "no_frames": "check its cable, its power and its file; unplug it and plug it in again",
+    "degraded": "see what it says of itself; restart the box if it stays so",
+    "behind": "end other programs on this machine, or lower inference.max_rate_hz in the site file",
+    "backlog": "end other programs on this machine, or lower inference.cpu_target in the site file",
+    "sparse": "the box is too slow for this many cameras: use fewer, or a faster box",
+}
+
+
+def judge_camera(name: str, health: Health, now_ns: int) -> list[Finding]:
+    """What is wrong with a camera whose process was just heard; nothing if it works or rests."""
+    status = camera_status(name, HeardHealth(health, now_ns), Presence(True, now_ns), True, now_ns)
+    if status.state in ("ok", "starting"):
+        return []
+    level: Level = "fault" if status.state == "lost" else "warning"
+    known_by = "what its process measured in the last second"
+    remedy = _REMEDIES.get(status.reason, "read the log of its process")
+    return [Finding(level, f"camera '{name}'", f"camera '{name}' {_words(status, health)}", known_by, remedy)]
+
+
+def _words(status: CameraStatus, health: Health) -> str:
+    rates = f"{status.fresh_hz or 0:.1f} of {status.target_hz or 0:.0f} pictures a second are looked at"
+    own = f" ({health.reason})" if health.reason else ""
+    words: dict[CameraReason, str] = {
+        "no_frames": "is silent: it delivers no pictures",
+        "behind": f"falls behind: {rates}",
+        "backlog": f"falls behind: its pictures wait {status.backlog_ms or 0:.0f} ms for their turn",
+        "sparse": f"is looked at too seldom for fast movement: {rates}",
+        "degraded": "works less well than it should",
+    }
+    return words.get(status.reason, f"is {status.state}") + own

@@ -1,0 +1,109 @@
+"""Listens to a running box: on its bus, and whether its page answers."""
+
+import threading
+import time
+from dataclasses import dataclass, field
+from typing import Literal
+
+from models.config.site import Site
+from models.messages import codec, topics
+from models.messages.health import Health
+from models.messages.motion import Motion
+from models.messages.observation import Observation
+from models.process import Bus, Delivery
+from services.doctor.agreement import Agreements
+from services.supervisor import page
+
+Answer = Literal["answers", "silent"]
+
+LISTEN_S = 5.0
+"""Health comes once a second; who is not heard in this time does not speak."""
+ENOUGH_S = 2.5
+"""If everybody was heard, this is long enough to judge rates and views."""
+_JOIN_S = 4.0
+_PAGE_S = 3.0
+_KEEP = 8
+
+
+@dataclass
+class Heard:
+    """What came while the box was listened to.
+
+    Attributes:
+        bus, page: "silent" is: the port is held, and nothing came within seconds.
+        seconds: for how long the bus was listened to.
+        healths: newest of each process.
+        alive: processes that hold their token on the bus now.
+        live: figures that came.
+        unreadable: messages that could not be read, by topic.
+    """
+
+    bus: Answer = "silent"
+    page: Answer = "silent"
+    seconds: float = 0.0
+    healths: dict[str, Health] = field(default_factory=dict)
+    alive: set[str] = field(default_factory=set)
+    live: int = 0
+    epochs: dict[str, int] = field(default_factory=dict)
+    agreements: Agreements = field(default_factory=Agreements)
+    unreadable: dict[str, int] = field(default_factory=dict)
+
+    def take(self, delivery: Delivery) -> None:
+        """Count one message."""
+        topic = delivery.topic
+        try:
+            if topic == topics.motion("live"):
+                self.live += 1
+                self.agreements.add_motion(codec.decode(delivery.payload, Motion))
+            elif topic.endswith("/observation"):
+                observation = codec.decode(delivery.payload, Observation)
+                self.epochs[observation.camera] = observation.epoch
+                self.agreements.add_observation(observation)
+            else:
+                health = codec.decode(delivery.payload, Health)
+                self.healths[health.process] = health
+        except codec.CodecError:
+            self.unreadable[topic] = self.unreadable.get(topic, 0) + 1
+
+    def note(self, topic: str, alive: bool) -> None:
+        """A process joined or left the bus."""
+        (self.alive.add if alive else self.alive.discard)(topic.rsplit("/", 1)[-1])
+
+
+def listen(site: Site, expected: frozenset[str]) -> Heard:
+    """Listen to the box of a site.
+
+    Args:
+        site: its site file.
+        expected: names of the processes that should speak; when all have, listening ends early.
+    """
+    heard = Heard(page="answers" if page.answers(site.tablet, _PAGE_S) else "silent")
+    bus = _join(site.bus.endpoint)
+    if bus is None:
+        return heard
+    heard.bus = "answers"
+    try:
+        cameras = [topics.observation(camera.name) for camera in site.cameras]
+        subscription = bus.subscribe(topics.ALL_HEALTH, topics.motion("live"), *cameras, keep=_KEEP)
+        bus.watch_alive(topics.ALL_ALIVE, heard.note)
+        began_s = time.monotonic()
+        while heard.seconds < (ENOUGH_S if expected <= heard.healths.keys() else LISTEN_S):
+            if (delivery := subscription.receive(0.1)) is not None:
+                heard.take(delivery)
+            heard.seconds = time.monotonic() - began_s
+    finally:
+        bus.close()
+    return heard
+
+
+def _join(endpoint: str) -> Bus | None:
+    """A client on the bus; None if the router does not answer in time, as one that hangs: its port accepts and nothing follows."""
+    from services.bus.zenoh_bus import open_client  # noqa: PLC0415 - a machine on which it cannot be imported is examined, too
+
+    stop = threading.Event()
+    joined: list[Bus | None] = []
+    opener = threading.Thread(target=lambda: joined.append(open_client(endpoint, stop)), name="bus", daemon=True)
+    opener.start()
+    opener.join(_JOIN_S)
+    stop.set()
+    return joined[0] if joined else None

@@ -1,0 +1,165 @@
+"""The machine: its processor, memory, disk and clock, and whether the data folder can be used."""
+
+import datetime as dt
+import os
+import platform
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import psutil
+
+from models.messages.health import MachineHealth
+from services.doctor.finding import Examined, Fact, Finding, Level
+from services.support.machine import MachineMeter, Sensors
+from services.support.machine_troubles import MachineCode, machine_troubles, size_of
+
+_LEVEL: dict[MachineCode, Level] = {"disk_full": "fault", "memory_low": "fault", "hot": "fault"}
+"""The other troubles are warnings."""
+_PLACE: dict[MachineCode, str] = {"disk_full": "disk", "disk_low": "disk", "memory_low": "memory", "clock_set": "clock"}
+_KNOWN_BY: dict[MachineCode, str] = {
+    "disk_full": "the file system of the data folder says so",
+    "disk_low": "the file system of the data folder says so",
+    "memory_low": "the kernel's and the control group's count of free memory",
+    "hot": "the processor's own sensor",
+    "throttled": "the processor's counters of throttling",
+    "clock_set": "the wall clock jumped against CLOCK_MONOTONIC",
+}
+EARLIEST = dt.datetime(2026, 11, 1, tzinfo=dt.UTC)
+"""No KineBox is older; a clock before this was never set, as on a box without a battery for it."""
+FEW_CORES = 1.9
+ARCHITECTURES = ("x86_64", "aarch64")
+_VECTOR_FLAGS = {"x86_64": "avx2", "aarch64": "asimddp"}
+"""Without it the networks run several times slower."""
+
+
+@dataclass(frozen=True)
+class MachineFacts:
+    """What was gathered.
+
+    Attributes:
+        processor, architecture, flags: its name, as `uname -m` has it, and what it can do.
+        cores: that are there, whether the box may use them or not.
+        memory_mb: in all.
+        wall: the machine's date and time.
+        data: the data folder.
+        data_problem: why nothing can be read from or written to the data folder; empty if both can.
+    """
+
+    health: MachineHealth
+    processor: str
+    architecture: str
+    flags: frozenset[str]
+    cores: int
+    memory_mb: float
+    wall: dt.datetime
+    data: Path
+    data_problem: str
+
+
+def gather_machine(data: Path, sensors: Sensors) -> MachineFacts:
+    """Look at this machine."""
+    wall_ns, _ = sensors.clocks_ns()
+    name, flags = _processor(Path("/proc/cpuinfo"))
+    return MachineFacts(
+        health=MachineMeter(data, sensors)(),
+        processor=name,
+        architecture=platform.machine(),
+        flags=flags,
+        cores=os.cpu_count() or 1,
+        memory_mb=psutil.virtual_memory().total / 2**20,
+        wall=dt.datetime.fromtimestamp(wall_ns * 1e-9, dt.UTC),
+        data=data,
+        data_problem=_try_folder(data),
+    )
+
+
+def judge_machine(machine: MachineFacts) -> Examined:
+    """What is wrong with it, and what it is."""
+    findings = [machine_finding(trouble.code, trouble.words, trouble.remedy) for trouble in machine_troubles(machine.health)]
+    findings += [finding for finding in (_architecture(machine), _cores(machine), _clock(machine), _folder(machine)) if finding]
+    health = machine.health
+    heat = "" if health.temperature_c is None else f", {health.temperature_c:.0f} °C"
+    facts = (
+        Fact("processor", f"{machine.processor}, {machine.cores} cores, of which the box may use {health.granted_cores:g}{heat}"),
+        Fact("memory", f"{size_of(machine.memory_mb)}, {size_of(health.memory_free_mb)} free"),
+        Fact("disk", f"{size_of(health.disk_free_mb)} free at {machine.data}"),
+        Fact("clock", f"{machine.wall:%d %b %Y, %H:%M:%S} UTC"),
+    )
+    return Examined(tuple(findings), facts)
+
+
+def machine_finding(code: MachineCode, words: str, remedy: str) -> Finding:
+    """The finding for a trouble of a machine."""
+    return Finding(_LEVEL.get(code, "warning"), _PLACE.get(code, "processor"), words, _KNOWN_BY[code], remedy)
+
+
+def _architecture(machine: MachineFacts) -> Finding | None:
+    if machine.architecture not in ARCHITECTURES:
+        words = f"KineBox does not run on {machine.architecture}"
+        return Finding("fault", "processor", words, "uname -m", f"use a machine with {' or '.join(ARCHITECTURES)}")
+    flag = _VECTOR_FLAGS[machine.architecture]
+    if flag not in machine.flags:
+        words = f"the processor has no {flag.upper()}, without which the networks run several times slower"
+        return Finding("warning", "processor", words, "/proc/cpuinfo", "use a newer processor, or fewer cameras")
+    return None
+
+
+def _cores(machine: MachineFacts) -> Finding | None:
+    granted = machine.health.granted_cores
+    if granted >= FEW_CORES:
+        return None
+    words = f"the box may use only {granted:g} of {machine.cores} cores; the cameras will be looked at a few times a second"
+    known_by = "this process's affinity and the quota of its control group"
+    return Finding("warning", "processor", words, known_by, "give the box more cores, or use fewer cameras")
+
+
+def _clock(machine: MachineFacts) -> Finding | None:
+    if machine.wall >= EARLIEST:
+        return None
+    words = f"the clock says {machine.wall:%d %b %Y}, which is before this KineBox was made; lessons get a wrong date"
+    return Finding(
+        "warning",
+        "clock",
+        words,
+        "the system's clock",
+        "set it (sudo timedatectl set-time ...) or connect the box to a time server",
+    )
+
+
+def _folder(machine: MachineFacts) -> Finding | None:
+    if not machine.data_problem:
+        return None
+    known_by = "a small file was written there, read back and deleted"
+    remedy = "correct --data, or the folder's owner and rights, or mend its disk"
+    return Finding("fault", "data folder", f"{machine.data} {machine.data_problem}", known_by, remedy)
+
+
+def _try_folder(data: Path) -> str:
+    """Why the folder cannot be used; empty if it can."""
+    try:
+        if not data.exists():
+            return "does not exist"
+        if not data.is_dir():
+            return "is no folder"
+        list(data.iterdir())
+        with tempfile.TemporaryFile(dir=data) as file:
+            file.write(b"doctor" * 1000)
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError as error:
+        return f"cannot be used: {error.strerror}"
+    return ""
+
+
+def _processor(cpuinfo: Path) -> tuple[str, frozenset[str]]:
+    """Name and abilities of the first processor in /proc/cpuinfo."""
+    entries: dict[str, str] = {}
+    try:
+        for line in cpuinfo.read_text().splitlines():
+            key, _, value = line.partition(":")
+            entries.setdefault(key.strip(), value.strip())
+    except OSError:
+        pass
+    name = entries.get("model name") or entries.get("Model") or "unknown processor"
+    return name, frozenset((entries.get("flags") or entries.get("Features") or "").split())
