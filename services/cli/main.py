@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from models.errors import UserError
-from services.cli import log_commands
+from services.cli import lesson_commands, log_commands
 from services.cli.user_error import exit_with_line
 
 SiteFile = Annotated[Path, typer.Option("--site", help="The site file.", dir_okay=False)]
@@ -24,6 +24,7 @@ app = typer.Typer(
 )
 config_app = typer.Typer(help="Check, show and migrate a site file.", no_args_is_help=True)
 app.add_typer(config_app, name="config")
+lesson_commands.add_to(app)
 log_commands.add_to(app)
 
 

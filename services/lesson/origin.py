@@ -12,7 +12,7 @@ from pathlib import Path
 
 _LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")
 _ROOT = Path(__file__).parents[2]
-_CODE = ("models", "services/fusion")
+_CODE = ("models/camera", "models/messages", "models/skeleton", "services/fusion")
 _SEPARATOR = "; "
 _CPUINFO = Path("/proc/cpuinfo")
 
@@ -20,7 +20,7 @@ _CPUINFO = Path("/proc/cpuinfo")
 def machine() -> str:
     """This machine and what is installed on it, as `LessonHeader.machine` keeps it: facts with semicolons between them."""
     libraries = [f"{name} {version(name)}" for name in _LIBRARIES]
-    return _SEPARATOR.join([_processor(_CPUINFO), f"Python {platform.python_version()}", *libraries, f"code {_code(_ROOT)}"])
+    return _SEPARATOR.join([_processor(_CPUINFO), f"Python {platform.python_version()}", *libraries, f"fusion code {_code(_ROOT)}"])
 
 
 def differences(recorded: str, here: str) -> list[str]:

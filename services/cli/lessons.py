@@ -1,0 +1,107 @@
+"""`kinebox lessons`: what has been recorded; finding one, and removing one."""
+
+import datetime as dt
+import sys
+from pathlib import Path
+
+import msgspec
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from models.config.site import LessonsConfig
+from models.errors import UserError
+from services.cli.duration import clock
+from services.lesson.index import NAME, LessonIndex, LessonRow
+from services.lesson.layout import PART_SUFFIX, SUFFIX
+from services.support.site_files import read_site
+
+_PIPE_WIDTH = 200
+
+
+def folder_of(data: Path, site: Path | None) -> Path:
+    """Where lessons are kept: as the site file says, or where they are if it does not; UserError if that cannot be read."""
+    config = LessonsConfig() if site is None else read_site(site)[0].lessons
+    return data / config.folder
+
+
+def listed(folder: Path, *, json: bool) -> None:
+    """Print the lessons of a folder, the newest first."""
+    rows = LessonIndex(folder).lessons() if folder.is_dir() else []
+    if json:
+        typer.echo(msgspec.json.format(msgspec.json.encode([_entry(folder, row) for row in rows])).decode())
+        return
+    if not rows:
+        typer.echo(f"no lesson in {folder}; 'kinebox record' records one")
+        return
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    table.add_column("lesson", no_wrap=True)  # it is copied from here
+    for column in ("title", "begun", "length", "MB", "state", "gaps"):
+        table.add_column(column, justify="right" if column in {"length", "MB", "gaps"} else "left")
+    for row in rows:
+        begun = f"{_begun(row):%Y-%m-%d %H:%M}"
+        table.add_row(row.lesson, row.title, begun, clock(row.seconds), f"{row.bytes / 1e6:.1f}", row.state, str(row.gaps))
+    # A pipe has no edge: a line a lesson there.
+    Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else _PIPE_WIDTH).print(table)
+    for row in rows:
+        if row.problem:
+            typer.echo(f"{row.lesson}: {row.problem}", err=True)
+
+
+def find(lesson: str, folder: Path) -> Path:
+    """The file of a lesson that is named by its path or its name in the list.
+
+    Raises:
+        UserError: there is none.
+    """
+    path = Path(lesson)
+    if path.exists() or path.suffix == SUFFIX or len(path.parts) > 1:
+        return path
+    for suffix in (SUFFIX, PART_SUFFIX):
+        if (folder / f"{lesson}{suffix}").is_file():
+            return folder / f"{lesson}{suffix}"
+    raise UserError(f"no lesson '{lesson}' in {folder}; 'kinebox lessons' lists what there is")
+
+
+def delete(lesson: str, folder: Path, *, sure: bool) -> None:
+    """Remove a finished lesson for good, after a question unless `sure`.
+
+    Raises:
+        UserError: there is none of that name, it is being recorded, or it cannot be removed.
+    """
+    file = folder / f"{lesson}{SUFFIX}"
+    if Path(lesson).name != lesson or not file.is_file():
+        if (folder / f"{Path(lesson).name}{PART_SUFFIX}").is_file():
+            raise UserError(f"lesson '{lesson}' is not finished; end its recording, or start KineBox, which recovers it")
+        raise UserError(f"no lesson '{lesson}' in {folder}; 'kinebox lessons' lists what there is")
+    if not sure and not typer.confirm(f"Remove {file} for good?"):
+        typer.echo("nothing was removed")
+        return
+    try:
+        file.unlink()
+    except OSError as error:
+        raise UserError(f"{file} cannot be removed: {error.strerror}; correct its permissions") from error
+    if (folder / NAME).is_file():
+        LessonIndex(folder).lessons()
+    typer.echo(f"removed {file}")
+
+
+def _begun(row: LessonRow) -> dt.datetime:
+    return dt.datetime.fromtimestamp(row.started_s, tz=dt.UTC).astimezone()
+
+
+def _entry(folder: Path, row: LessonRow) -> dict[str, object]:
+    """A lesson as programs read it."""
+    suffix = PART_SUFFIX if row.state == "unfinished" else SUFFIX
+    return {
+        "lesson": row.lesson,
+        "title": row.title,
+        "begun": _begun(row).isoformat(timespec="seconds"),
+        "seconds": round(row.seconds, 3),
+        "bytes": row.bytes,
+        "state": row.state,
+        "gaps": row.gaps,
+        "segments": row.segments,
+        "problem": row.problem,
+        "file": str(folder / f"{row.lesson}{suffix}"),
+    }

@@ -1,0 +1,81 @@
+"""`kinebox replay`: a box that plays a lesson into the page, with what the lesson itself says of its site and calibration."""
+
+import socket
+import tempfile
+from pathlib import Path
+
+import msgspec
+import typer
+
+from models.config.site import BusConfig, Site, TabletConfig, decode_site
+from models.errors import UserError
+from models.process import Playback
+from services.cli.check_lesson import what_changed
+from services.lesson.lesson_header import LessonHeader
+from services.lesson.lesson_reader import open_lesson
+from services.supervisor.supervise import supervise
+from services.support.listening import listen
+from services.support.site_migration import migrated_text
+from services.support.site_toml import render
+
+_HERE = "127.0.0.1"
+_CALIBRATION = "rig.toml"
+
+
+def play(file: Path, data: Path, page: TabletConfig, speed: float, *, loop: bool) -> None:
+    """Play a lesson until SIGINT or SIGTERM, or once.
+
+    Args:
+        file: of the lesson.
+        data: folder for logs and compiled kernels.
+        page: where the page listens; of the recorded site only what was in the room counts.
+        speed: seconds of the lesson a second.
+        loop: begin again at the end.
+
+    Raises:
+        UserError: the file is no lesson that can be replayed, or the page's port is taken; nothing was started.
+    """
+    with open_lesson(file) as lesson:
+        header = lesson.header
+        for line in what_changed(header):
+            typer.echo(f"note: {line}", err=True)
+        lesson.summary()  # Damage is told now, and not when the pupils wait for what follows.
+    _require_port(page)
+    playback = Playback(str(file.resolve()), header.title, header.started_ns + header.wall_minus_monotonic_ns, speed, loop)
+    with tempfile.TemporaryDirectory(prefix="kinebox-replay-") as folder:
+        site_file = Path(folder) / "site.toml"
+        site_file.write_text(render(replay_site(header, page)))
+        (Path(folder) / _CALIBRATION).write_text(header.rig_toml)
+        supervise(site_file, data, (), playback)
+
+
+def replay_site(header: LessonHeader, page: TabletConfig) -> Site:
+    """The lesson's site with this machine's addresses, and without spares: nobody is hurt by a replay that stops for a second.
+
+    Raises:
+        UserError: this KineBox cannot read it.
+    """
+    recorded = decode_site(migrated_text(header.site_toml.encode(), "of the lesson").new.encode(), "of the lesson")
+    return msgspec.structs.replace(
+        recorded,
+        calibration=_CALIBRATION,
+        bus=BusConfig(endpoint=f"tcp/{_HERE}:{_free_port()}"),
+        tablet=page,
+        supervisor=msgspec.structs.replace(recorded.supervisor, spares=False),
+    )
+
+
+def _require_port(page: TabletConfig) -> None:
+    try:
+        listen(page.host, page.port).close()
+    except OSError as error:
+        raise UserError(
+            f"the page cannot be shown at {page.host} port {page.port}: {error.strerror}; a running KineBox has one already; "
+            "name another with --port"
+        ) from error
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind((_HERE, 0))
+        return int(probe.getsockname()[1])

@@ -1,0 +1,132 @@
+"""Asking the recorder of a running box to begin or end a lesson, from outside the box.
+
+A request is only heard if the bus has already connected both sides, and nobody answers it: so it is repeated until the recorder's
+health says that it was done.
+"""
+
+import threading
+import time
+from collections.abc import Callable
+
+from models.errors import UserError
+from models.messages import codec, topics
+from models.messages.health import Health, RecorderHealth
+from models.messages.lesson import LessonRequest
+from models.process import RECORDER, Bus, Subscription
+
+CONNECT_S = 3.0
+HEARD_WITHIN_S = 5.0
+"""Health comes every second; a recorder that is being restarted needs a few."""
+DONE_WITHIN_S = 20.0
+"""A box that starts or is busy may take as long until fusion begins anew for a lesson."""
+_REPEAT_S = 1.0
+_REFUSED_AFTER_S = 1.5
+_ROUND_S = 0.2
+_KEEP = 4
+
+
+class Remote:
+    """A place on the bus of a box from which its recorder is heard and asked."""
+
+    def __init__(self, bus: Bus) -> None:
+        self._bus = bus
+        self._subscription: Subscription = bus.subscribe(topics.ALL_HEALTH, keep=_KEEP)
+        self._someone = False
+        self.newest: Health | None = None
+        """What the recorder said last."""
+
+    def start(self, title: str) -> RecorderHealth:
+        """Begin a lesson; its state once it has begun.
+
+        Raises:
+            UserError: no recorder is heard, one is recording already, or it cannot record.
+        """
+        now = self._current()
+        if now.lesson:
+            raise UserError(f"lesson {now.lesson} is being recorded already; end it with 'kinebox record --stop'")
+        return self._ask(LessonRequest("start", title), lambda recorder: bool(recorder.lesson), "begin a lesson")
+
+    def stop(self) -> RecorderHealth | None:
+        """End the lesson that is being recorded; its last state before, or None if none was.
+
+        Raises:
+            UserError: no recorder is heard, or it does not end.
+        """
+        before = self._current()
+        if not before.lesson:
+            return None
+        self._ask(LessonRequest("stop"), lambda recorder: not recorder.lesson, "end the lesson")
+        return before
+
+    def listen(self, timeout_s: float) -> Health | None:
+        """The recorder's next word; None if none came."""
+        end_s = time.monotonic() + timeout_s
+        while (remaining_s := end_s - time.monotonic()) > 0:
+            delivery = self._subscription.receive(remaining_s)
+            if delivery is None:
+                break
+            try:
+                health = codec.decode(delivery.payload, Health)
+            except codec.CodecError:
+                continue
+            self._someone = True
+            if health.process == RECORDER:
+                self.newest = health
+                return health
+        return None
+
+    def _current(self) -> RecorderHealth:
+        """What the recorder does now."""
+        health = self.listen(HEARD_WITHIN_S)
+        if health is None:
+            whom = "the box's recorder is not heard" if self._someone else "no part of the box is heard"
+            raise UserError(f"{whom}; see what 'kinebox run' says about it, or start the box again")
+        if health.state == "failed" or health.recorder is None:
+            raise UserError(f"the recorder cannot record: {health.reason or 'it does not say why'}")
+        return health.recorder
+
+    def _ask(self, request: LessonRequest, done: Callable[[RecorderHealth], bool], what: str) -> RecorderHealth:
+        asked_s = time.monotonic()
+        again_s = asked_s
+        while (now_s := time.monotonic()) < asked_s + DONE_WITHIN_S:
+            if now_s >= again_s:
+                self._bus.publish(topics.lesson_request(), codec.encode(request))
+                again_s = now_s + _REPEAT_S
+            health = self.listen(_ROUND_S)
+            if health is None or health.recorder is None:
+                continue
+            if done(health.recorder):
+                return health.recorder
+            # What it says at first may be about the time before.
+            if health.reason and health.t_ns * 1e-9 > asked_s + _REFUSED_AFTER_S:
+                raise UserError(f"the recorder cannot {what}: {health.reason}")
+        reason = f": {self.newest.reason}" if self.newest is not None and self.newest.reason else ""
+        raise UserError(f"the recorder did not {what} within {DONE_WITHIN_S:g} s{reason}")
+
+
+def join(endpoint: str) -> Bus:
+    """A place on the bus of the box that runs.
+
+    Raises:
+        UserError: none answers.
+    """
+    from services.bus.zenoh_bus import open_client  # noqa: PLC0415 - a wrong word on the command line shall not wait for it
+
+    too_long = threading.Event()
+    timer = threading.Timer(CONNECT_S, too_long.set)
+    timer.start()
+    try:
+        bus: Bus | None = open_client(endpoint, too_long)
+    finally:
+        timer.cancel()
+    if bus is None:
+        raise UserError(f"no box runs at {endpoint}; start it with 'kinebox run', or name the site file of the one that runs")
+    return bus
+
+
+def require_title(title: str) -> None:
+    """Raise UserError if no lesson can be called that."""
+    try:
+        LessonRequest("start", title)
+    except ValueError as error:
+        raise UserError(f"--title: {error}; shorten it") from error
