@@ -12,6 +12,7 @@ import tempfile
 import tomllib
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -33,7 +34,8 @@ from tests.bench.footage_run import (
     pupil_keypoints,
     reconstruct,
 )
-from tests.bench.peers.pose2sim_project import Pose2SimResult, run_pose2sim
+from tests.bench.peers.answer import Answer, Keypoints
+from tests.bench.peers.pose2sim_project import run_pose2sim
 from tests.bench.report import Report
 
 RIG = Path("deploy/sites/footage/rig.toml")
@@ -80,7 +82,7 @@ def main() -> None:
     keypoints = pupil_keypoints(rig, events, ours.smooth_m)
     report.add(accuracy(rig, ours, keypoints, scale))
     report.add(steadiness(rig, ours, events))
-    report.add({"bystander_inliers": bystander_inliers(rig, ours, keypoints[0])})
+    report.add({"bystander_inliers": bystander_inliers(rig, ours, keypoints[0], tomllib.loads(PEOPLE.read_text())["picture"])})
     without = reconstruct(unshifted, events, frames)
     report.add(suffixed(accuracy(unshifted, without, pupil_keypoints(unshifted, events, without.smooth_m), scale), ".noshift"))
 
@@ -99,7 +101,7 @@ def main() -> None:
         peers.append(pose2sim(rig, keypoints, scale))
         own_s += [reconstruct(rig, events, frames).cpu_s for _ in range(PASSES)]
     report.add(limbs_beside(ours, peers[0]))
-    report.add(speeds(statistics.median(own_s), statistics.median(peer.cpu_s for peer in peers), frames))
+    report.add(speeds(statistics.median(own_s), statistics.median(peer.cpu_ms for peer in peers), frames))
     report.show(BARS)
     print(f"written to {report.write(data)}")
 
@@ -149,10 +151,10 @@ def frames_without_pose(found: Reconstruction) -> float:
     return float((np.minimum(live, smooth) < MIN_JOINTS).sum())
 
 
-def bystander_inliers(rig: Rig, found: Reconstruction, points_px: Float) -> float:
+def bystander_inliers(rig: Rig, found: Reconstruction, points_px: Float, pictures: list[dict[str, Any]]) -> float:
     """Keypoints that were fused and lie in a hand-drawn box of somebody else, and not in the pupil's."""
     count = 0
-    for picture in tomllib.loads(PEOPLE.read_text())["picture"]:
+    for picture in pictures:
         index, frame = rig.index(picture["camera"]), picture["frame"]
         fused = (found.views[frame] >> index) & 1 == 1
         observed = points_px[frame, index]
@@ -162,18 +164,23 @@ def bystander_inliers(rig: Rig, found: Reconstruction, points_px: Float) -> floa
     return float(count)
 
 
-def pose2sim(rig: Rig, keypoints: tuple[Float, Float], scale: float) -> Pose2SimResult:
-    """The peer on the pupil's keypoints, undistorted and shifted back for it."""
+def for_peers(rig: Rig, keypoints: tuple[Float, Float], scale: float) -> Keypoints:
+    """The pupil's keypoints, undistorted and shifted back."""
     points, scores = keypoints
     flat = np.stack([camera.undistort(points[:, i]) - camera.shift_px for i, camera in enumerate(rig)], axis=1)
-    still = rig.with_shifts(np.zeros((len(rig), 2)))
+    return Keypoints(rig.with_shifts(np.zeros((len(rig), 2))), flat, scores, RATE_HZ, scale)
+
+
+def pose2sim(rig: Rig, keypoints: tuple[Float, Float], scale: float) -> Answer:
+    """The peer with its default filter on the pupil's keypoints."""
     with tempfile.TemporaryDirectory() as folder:
-        return run_pose2sim(Path(folder), still, flat[:, :, None], scores[:, :, None], RATE_HZ, scale)
+        ((_, filtered),) = run_pose2sim(Path(folder), [for_peers(rig, keypoints, scale)], ["butterworth"])
+    return filtered
 
 
-def limbs_beside(ours: Reconstruction, theirs: Pose2SimResult) -> dict[str, float]:
+def limbs_beside(ours: Reconstruction, theirs: Answer) -> dict[str, float]:
     """Pose2Sim's limbs, and how many of ours vary more."""
-    limbs, peer = limb_variation_pct(ours.smooth_m[TESTED]), limb_variation_pct(theirs.filtered_m[TESTED])
+    limbs, peer = limb_variation_pct(ours.smooth_m[TESTED]), limb_variation_pct(theirs.joints_m[TESTED])
     return {
         **{f"pose2sim.limb_cv_pct.{limb}": value for limb, value in peer.items()},
         "pose2sim.limb_cv_pct.median": float(np.median(list(peer.values()))),
@@ -182,12 +189,12 @@ def limbs_beside(ours: Reconstruction, theirs: Pose2SimResult) -> dict[str, floa
     }
 
 
-def speeds(own_s: float, peer_s: float, frames: int) -> dict[str, float]:
+def speeds(own_s: float, peer_ms: float, frames: int) -> dict[str, float]:
     """CPU from keypoints to smooth joints: ours (association, filters, live and smooth output) and Pose2Sim's three stages."""
     return {
         "fusion_cpu_ms_per_frame": 1e3 * own_s / (frames + FLUSH_FRAMES),
-        "pose2sim.cpu_ms_per_frame": 1e3 * peer_s / frames,
-        "speedup.pose2sim": peer_s / own_s,
+        "pose2sim.cpu_ms_per_frame": peer_ms,
+        "speedup.pose2sim": peer_ms * frames / (1e3 * own_s),
     }
 
 

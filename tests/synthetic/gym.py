@@ -59,6 +59,8 @@ class Gym:
         swap: share of time in which left and right are exchanged (body, arms or legs).
         distractor: share of time in which one camera sees a wrist somewhere else, confidently.
         bystanders: persons, with the cameras that see them, who are not the pupil.
+        jitter: share of the time between two inferences by which it varies.
+        phases_s: time of each camera's first inference; None draws it within one interval.
         latency_s: mean time from exposure to arrival; varies by a third.
         dead: cameras by index with the (from, to) seconds in which they are silent.
         seed: of the random numbers.
@@ -75,6 +77,8 @@ class Gym:
     swap: float = 0.04
     distractor: float = 0.05
     bystanders: tuple[tuple[Person, tuple[int, ...]], ...] = ()
+    jitter: float = 0.15
+    phases_s: tuple[float, ...] | None = None
     latency_s: float = 0.06
     dead: tuple[tuple[int, float, float], ...] = ()
     seed: int = 0
@@ -101,7 +105,8 @@ class Gym:
     def _observations(self, camera: int, random: np.random.Generator) -> Iterator[tuple[float, Observation]]:
         rate = self.rates_hz[camera % len(self.rates_hz)]
         faults = _Faults(self, random)
-        t, sequence = random.uniform(0.0, 1.0 / rate), 0
+        drawn = random.uniform(0.0, 1.0 / rate)
+        t, sequence = drawn if self.phases_s is None else self.phases_s[camera], 0
         while t < self.seconds:
             t_ns = T0_NS + round(t * 1e9)
             faults.advance(1.0 / rate)
@@ -116,7 +121,7 @@ class Gym:
                 name = self.rig.names[camera]
                 yield arrival, Observation(name, 0, sequence, sequence, t_ns, t_ns, "synthetic", tuple(persons))
             sequence += 1
-            t += random.uniform(0.85, 1.15) / rate
+            t += random.uniform(1.0 - self.jitter, 1.0 + self.jitter) / rate
 
     def _see(self, person: Person, camera: int, t: float, random: np.random.Generator) -> Float:
         exact = self.rig.cameras[camera].project(person.joints(t))

@@ -1,14 +1,13 @@
 """Pose2Sim 0.10.49 on our keypoints: writes its project folder, runs it in its environment, reads its TRC back.
 
 Settings are its demo's and documentation's for one person (thresholds 0.3 and 15 px at full resolution, at least two
-cameras, Butterworth 4th order 6 Hz after its Hampel filter), but for displays, which are off. It is given keypoints that are
+cameras, gaps below 20 frames interpolated, Hampel filter before the filter proper), but for displays, which are off. Each of its
+filters has its demo's parameters. It is given keypoints that are
 already undistorted and shifted, with a calibration without distortion, so that it is not charged for what it does not do.
 """
 
 import json
-import os
-import subprocess
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 
 import cv2
@@ -17,64 +16,71 @@ import numpy as np
 from models.arrays import Float
 from models.camera.rig import Rig
 from models.skeleton import coco
+from tests.bench.peers.answer import Answer, Keypoints
+from tests.bench.peers.environment import run_in
 
-ENVIRONMENT = Path("build/peers/pose2sim")
-_RUNNER = Path(__file__).parent / "pose2sim/run.py"
+NAME = "pose2sim"
+RAW = f"{NAME}.raw"
+DEFAULT = f"{NAME}.butterworth"
+"""What its demo does."""
+FILTERS = (
+    "butterworth",
+    "kalman",
+    "one_euro",
+    "gcv_spline",
+    "gaussian",
+    "loess",
+    "median",
+    "butterworth_on_speed",
+    "acc_minimizing",
+)
+SETTINGS = {
+    "raw": "triangulation alone: cameras are left out until the mean reprojection error is below 15 px; no filter",
+    "butterworth": "its demo: + Hampel, Butterworth 4th order 6 Hz",
+    "kalman": "+ Hampel, Kalman smoother, trust ratio 500",
+    "one_euro": "+ Hampel, One Euro 4 Hz, beta 1.5, zero phase",
+    "gcv_spline": "+ Hampel, spline by generalised cross-validation, automatic",
+    "gaussian": "+ Hampel, Gaussian kernel, sigma 1",
+    "loess": "+ Hampel, LOESS over 5 frames",
+    "median": "+ Hampel, median of 3",
+    "butterworth_on_speed": "+ Hampel, Butterworth on speed, 4th order 10 Hz",
+    "acc_minimizing": "+ Hampel, Whittaker-Henderson 6 Hz",
+}
 _NAMES = {
     "Nose": "nose",
     **{side[0].upper() + part.capitalize(): f"{side}_{part}" for side in ("left", "right") for part in
        ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")},
 }  # fmt: skip
+JOINTS = tuple(sorted(coco.INDEX[name] for name in _NAMES.values()))
+"""The joints that it has: all but eyes and ears."""
 
 
-@dataclass(frozen=True)
-class Pose2SimResult:
-    """What it found.
-
-    Attributes:
-        raw_m, filtered_m: (frames, 17, 3) in our world frame; NaN where it has nothing (eyes and ears always).
-        wall_s, cpu_s: of association, triangulation and filtering together.
-    """
-
-    raw_m: Float
-    filtered_m: Float
-    wall_s: float
-    cpu_s: float
-
-
-def run_pose2sim(folder: Path, rig: Rig, points_px: Float, scores: Float, rate_hz: float, scale: float) -> Pose2SimResult:
-    """Reconstruct one person.
+def run_pose2sim(folder: Path, clips: Sequence[Keypoints], filters: Sequence[str] = FILTERS) -> list[list[Answer]]:
+    """Reconstruct one person in clips: the answers of the triangulation alone and after each filter.
 
     Args:
         folder: an empty folder to work in.
-        rig: calibration, in the resolution of the keypoints.
-        points_px: (frames, cameras, persons, 17, 2) undistorted keypoints with `shift_px` taken off; NaN for nobody.
-        scores: (frames, cameras, persons, 17).
-        rate_hz: frames a second.
-        scale: full resolution over the keypoints' resolution; its thresholds are in full-resolution pixels.
+        clips: keypoints, without distortion.
+        filters: of `FILTERS`.
     """
-    _write_calibration(folder / "calibration", rig, scale)
-    _write_keypoints(folder / "pose", rig, points_px * scale, scores)
-    (folder / "Config.toml").write_text(_config(len(points_px), rate_hz))
-    environment = {**os.environ, "MPLBACKEND": "Agg", "QT_QPA_PLATFORM": "offscreen"}
-    for name in ("PYTHONPATH", "PYTHONHOME"):
-        environment.pop(name, None)
-    result = subprocess.run(
-        [str((ENVIRONMENT / "bin/python").absolute()), str(_RUNNER), str(folder)],
-        capture_output=True, text=True, check=False, env=environment,
-    )  # fmt: skip
-    if result.returncode != 0:
-        raise RuntimeError(f"Pose2Sim failed:\n{result.stderr[-3000:]}")
-    seconds = json.loads(result.stdout.strip().splitlines()[-1])
-    files = sorted((folder / "pose-3d").glob("*.trc"))
-    filtered = [file for file in files if "filt" in file.name]
-    raw = [file for file in files if "filt" not in file.name]
-    return Pose2SimResult(
-        raw_m=_read_trc(raw[0], len(points_px)),
-        filtered_m=_read_trc(filtered[0], len(points_px)),
-        wall_s=sum(stage["wall"] for stage in seconds.values()),
-        cpu_s=sum(stage["cpu"] for stage in seconds.values()),
-    )
+    projects = [folder / str(number) for number in range(len(clips))]
+    for project, clip in zip(projects, clips, strict=True):
+        _write_calibration(project / "calibration", clip.rig, clip.scale)
+        _write_keypoints(project / "pose", clip.rig, clip.points_px * clip.scale, clip.scores)
+        (project / "Config.toml").write_text(_config(len(clip), clip.rate_hz))
+    times = json.loads(run_in(NAME, [",".join(filters), *(str(project.absolute()) for project in projects)]))
+    return [
+        [_answer(project, setting, seconds, len(clip)) for setting in ("raw", *filters)]
+        for project, clip, seconds in zip(projects, clips, times, strict=True)
+    ]
+
+
+def _answer(project: Path, setting: str, seconds: dict[str, dict[str, float]], frames: int) -> Answer:
+    stages = ["association", "triangulation", *([] if setting == "raw" else [setting])]
+    cpu_ms, wall_ms = (1e3 * sum(seconds[stage][clock] for stage in stages) / frames for clock in ("cpu", "wall"))
+    files = (project / "pose-3d").glob("*.trc")
+    (file,) = [f for f in files if ("filt" not in f.name if setting == "raw" else f.stem.endswith(f"filt_{setting}"))]
+    return Answer(f"{NAME}.{setting}", _read_trc(file, frames), cpu_ms, wall_ms)
 
 
 def _write_calibration(folder: Path, rig: Rig, scale: float) -> None:
@@ -103,10 +109,9 @@ def _write_keypoints(folder: Path, rig: Rig, points_px: Float, scores: Float) ->
         target = folder / f"{camera.name}_json"
         target.mkdir(parents=True)
         for frame in range(len(points_px)):
-            people = []
-            for points, score in zip(points_px[frame, index], scores[frame, index], strict=True):
-                if np.isfinite(points).all():
-                    people.append({"person_id": [-1], "pose_keypoints_2d": np.column_stack((points, score)).ravel().tolist()})
+            points, score = points_px[frame, index], scores[frame, index]
+            person = {"person_id": [-1], "pose_keypoints_2d": np.column_stack((points, score)).ravel().tolist()}
+            people = [person] if np.isfinite(points).all() else []
             (target / f"{camera.name}_{frame:06d}.json").write_text(json.dumps({"version": 1.3, "people": people}))
 
 
@@ -150,6 +155,27 @@ save_filt_plots = false
 make_c3d = false
 [filtering.butterworth]
 cut_off_frequency = 6
+order = 4
+[filtering.kalman]
+trust_ratio = 500
+smooth = true
+[filtering.one_euro]
+cut_off_frequency = 4
+beta = 1.5
+d_cut_off_frequency = 1.0
+[filtering.gcv_spline]
+cut_off_frequency = "auto"
+smoothing_factor = 1.0
+[filtering.acc_minimizing]
+cut_off_frequency = 6
+[filtering.loess]
+nb_values_used = 5
+[filtering.gaussian]
+sigma_kernel = 1
+[filtering.median]
+kernel_size = 3
+[filtering.butterworth_on_speed]
+cut_off_frequency = 10
 order = 4
 """
 

@@ -1,7 +1,7 @@
-"""Runs inside Pose2Sim's own environment: association, triangulation and filtering of one project folder, each timed.
+"""Runs inside Pose2Sim's own environment: association, triangulation and filtering of project folders, each timed.
 
-Usage: python run.py PROJECT_FOLDER. The last line printed is JSON: seconds of wall and of CPU by stage. Importing and reading the
-configuration are not counted.
+Usage: python run.py FILTERS PROJECT_FOLDER..., filters separated by commas. The last line printed is JSON: for each folder, seconds
+of wall and of CPU by stage; a filter is a stage of its name. Importing and reading the configuration are not counted.
 """
 
 import json
@@ -20,15 +20,22 @@ from Pose2Sim.triangulation import triangulate_all
 
 
 def main() -> None:
-    """Run the three stages in the folder named on the command line."""
-    os.chdir(sys.argv[1])
-    _, configs = Pose2Sim.read_config_files(None)
-    seconds = {}
-    for name, stage in (("association", associate_all), ("triangulation", triangulate_all), ("filtering", filter_all)):
-        wall, cpu = time.perf_counter(), time.process_time()
-        stage(configs[0])
-        seconds[name] = {"wall": time.perf_counter() - wall, "cpu": time.process_time() - cpu}
-    print(json.dumps(seconds))
+    """Run the stages in the folders named on the command line."""
+    filters = sys.argv[1].split(",")
+    times = []
+    for folder in sys.argv[2:]:
+        os.chdir(folder)
+        _, configs = Pose2Sim.read_config_files(None)
+        config, seconds = configs[0], {}
+        stages = [("association", associate_all), ("triangulation", triangulate_all), *((name, filter_all) for name in filters)]
+        for name, stage in stages:
+            if name in filters:
+                config["filtering"]["type"] = name
+            wall, cpu = time.perf_counter(), time.process_time()
+            stage(config)
+            seconds[name] = {"wall": time.perf_counter() - wall, "cpu": time.process_time() - cpu}
+        times.append(seconds)
+    print(json.dumps(times))
 
 
 main()
