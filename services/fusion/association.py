@@ -5,9 +5,8 @@ camera's nearest person then joins. More cameras that agree win: a bystander at 
 consistent in both. Among equals, the person nearer to where the cameras look, and larger, is the pupil.
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Final
 
 import numpy as np
@@ -18,6 +17,7 @@ from services.fusion.candidates import PERSONS, Candidates
 from services.fusion.compiled import Counts, compiled
 from services.fusion.config import FusionConfig
 from services.fusion.joint_filter import Expectation
+from services.fusion.pairing import disagreements
 from services.fusion.swap import repair
 from services.fusion.triangulation import Triangulated, triangulate
 from services.fusion.views import Sighting, Views
@@ -63,21 +63,17 @@ def pick_pupil(persons: tuple[Sighting, ...], expected: Expectation, gate_m: flo
     Compared is the median distance, sides ignored, of keypoints from where they are expected; the expectation's own uncertainty
     widens the gate, to twice at most.
     """
-    best, nearest = None, gate_m
-    for person in persons:
-        distance = median_distance(
-            person.points_px,
-            person.usable,
-            expected.points_px,
-            expected.variance_px2,
-            expected.px_per_m,
-            expected.known,
-            _MIRROR,
-            gate_m,
-        )
-        if distance < nearest:
-            best, nearest = person, distance
-    return best
+    if not persons:
+        return None
+    distances = median_distances(persons, expected, gate_m)
+    nearest = int(np.argmin(distances))
+    return persons[nearest] if distances[nearest] < gate_m else None
+
+
+def median_distances(persons: tuple[Sighting, ...], expected: Expectation, gate_m: float) -> Float:
+    """(n,) distances in metres as `pick_pupil` compares them; infinite where too little can be compared."""
+    known = expected.points_px, expected.variance_px2, expected.px_per_m, expected.known
+    return np.array([median_distance(person.points_px, person.usable, *known, _MIRROR, gate_m) for person in persons])
 
 
 @compiled
@@ -129,14 +125,38 @@ class PersonSearch:
 
     def best(self, familiar: Familiar) -> Hypothesis | None:
         """The likeliest pupil, people who were the pupil before the seam or the loss being preferred."""
-        found = [
-            hypothesis
-            for first, second in combinations(sorted(self._persons), 2)
-            for a in self._persons[first]
-            for b in self._persons[second]
-            if (hypothesis := self._grow(a, b, familiar)) is not None
-        ]
+        found: list[Hypothesis] = []
+        settled: set[int] = set()
+        tried = 0
+        for a, b in self._pairs():
+            if a in settled or b in settled or any({a, b} <= set(hypothesis.slots.values()) for hypothesis in found):
+                continue
+            if tried == self._config.association.max_hypotheses:
+                break
+            tried += 1
+            hypothesis = self._grow(a, b, familiar)
+            if hypothesis is not None:
+                found.append(hypothesis)
+                # Most cameras don't agree by chance: whoever they agree on is nobody else.
+                if len(hypothesis.slots) > max(2, len(self._persons) / 2):
+                    settled.update(hypothesis.slots.values())
         return max(found, key=lambda hypothesis: hypothesis.score, default=None)
+
+    def _pairs(self) -> list[tuple[int, int]]:
+        """Pairs of slots of two cameras that may be one person, those first that agree best."""
+        slots = sorted(slot for slots in self._persons.values() for slot in slots)
+        persons = [self._sightings[slot] for slot in slots]
+        costs = disagreements(self._views, persons, _MIN_JOINTS, _AGREEING, self._config.triangulation)
+        first, second = np.nonzero(np.triu(np.isfinite(costs)))
+        order = np.argsort(costs[first, second], kind="stable")
+        return [(slots[first[i]], slots[second[i]]) for i in order]
+
+    def everyone(self) -> Iterator[Hypothesis]:
+        """One person after the other, the likeliest first; no candidate is of two of them."""
+        while (found := self.best(frozenset())) is not None:
+            yield found
+            for camera, slot in found.slots.items():
+                self._persons[camera].remove(slot)
 
     def _grow(self, a: int, b: int, familiar: Familiar) -> Hypothesis | None:
         members = {self._sightings[a].camera: self._sightings[a], self._sightings[b].camera: self._sightings[b]}

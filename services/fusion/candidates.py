@@ -25,19 +25,20 @@ class Candidates:
         self.tracks = Tracks(cameras * PERSONS, _DEPTH)
         self.identities: Counts = np.full((cameras, PERSONS), -1, np.int64)
 
-    def add(self, sighting: Sighting) -> None:
-        """Take a sighting into its track; a new track replaces the one that was seen longest ago."""
+    def add(self, sighting: Sighting) -> int:
+        """Take a sighting into its track, and return its slot; a new track replaces the one that was seen longest ago."""
         row = self.identities[sighting.camera]
         base = sighting.camera * PERSONS
         numbers = row.tolist()
         if sighting.track in numbers:
-            slot = base + numbers.index(sighting.track)
+            slot = base + int(numbers.index(sighting.track))
         else:
             newest = [self.tracks.newest_s(base + i) for i in range(PERSONS)]
             slot = base + int(np.argmin(newest))
             self.tracks.clear(slot)
             row[slot - base] = sighting.track
         self.tracks.add(slot, sighting)
+        return slot
 
     def live(self, t_s: float, max_age_s: float) -> list[int]:
         """Slots that were still seen within `max_age_s` before `t_s`, or later."""

@@ -83,6 +83,7 @@ class AssociationConfig:
         challenge_s: how long another person must have more views than the chosen one to be chosen instead.
         lookback_s: how far back observations are fused once the pupil is chosen.
         max_age_s: a track older than this is no candidate.
+        max_hypotheses: how many persons in space are looked at in one search; the pairs of sightings that agree best propose them.
     """
 
     person_gate_m: float = 0.20
@@ -92,6 +93,7 @@ class AssociationConfig:
     challenge_s: float = 1.0
     lookback_s: float = 0.6
     max_age_s: float = 0.4
+    max_hypotheses: int = 12
 
 
 @dataclass(frozen=True, kw_only=True)

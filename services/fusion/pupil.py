@@ -71,6 +71,10 @@ class Pupil:
         """How many cameras have seen the pupil since then."""
         return sum(self._tracks.newest_s(camera) >= t_s for camera in range(len(self._views)))
 
+    def expect(self, camera: int, t_s: float) -> Expectation:
+        """The joints as a camera should see them at an instant."""
+        return self._filters.at(t_s).expect(self._views.projections[camera])
+
     def follow(self, camera: int, t_s: float, persons: tuple[Sighting, ...], config: FusionConfig) -> None:
         """Find the pupil in one picture and fuse it at the picture's own time."""
         projection = self._views.projections[camera]
@@ -102,14 +106,19 @@ class Pupil:
         if sigma_px < np.inf:
             self.body.observe(t_s, projection, np.array((u, v)), sigma_px)
 
-    def check(self, config: FusionConfig) -> None:
-        """Hold the filters against triangulation at the newest instant that all cameras reach, and give up what nobody sees."""
+    def check(self, now_s: float, config: FusionConfig) -> None:
+        """Hold the filters against triangulation at the newest instant that all cameras reach, and give up what nobody sees.
+
+        `now_s` is when the newest picture was taken, whether the pupil is in it or not.
+        """
         newest = np.array([self._tracks.newest_s(camera) for camera in range(len(self._views))])
         fresh = newest[newest >= newest.max() - _STALE_S]
         if not np.isfinite(newest.max()):
             return
+        self._give_up(now_s, config)
+        if now_s - newest.max() > _longest_s(config):
+            return
         instant = max(float(fresh.min()), self.since_s)
-        self._give_up(float(newest.max()), config)
         filters = self._filters.at(instant)
         points, sigma, usable = self._tracks.at(instant, config.timing)
         prior = np.where(filters.alive[:, None], filters.state[:, :3], np.nan)
@@ -204,8 +213,7 @@ class Pupil:
             self._agreed_s[agreed, joint] = np.maximum(self._agreed_s[agreed, joint], t_s)
 
     def _give_up(self, t_s: float, config: FusionConfig) -> None:
-        longest = config.filter.view_memory_s + config.filter.guess_s
-        gone = self._filters.newest.alive & (t_s - self._second_newest() > longest)
+        gone = self._filters.newest.alive & (t_s - self._second_newest() > _longest_s(config))
         if gone.any():
             self._filters.seed(t_s, tuple(Seed(int(joint), None, None) for joint in np.flatnonzero(gone)))
 
@@ -213,3 +221,8 @@ class Pupil:
         """(17,) when the second of two views last agreed with a joint."""
         newest: Float = np.sort(self._agreed_s, axis=0)[-2]
         return newest
+
+
+def _longest_s(config: FusionConfig) -> float:
+    """How long a joint is carried on after two views last agreed on it."""
+    return config.filter.view_memory_s + config.filter.guess_s

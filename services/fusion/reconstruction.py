@@ -59,7 +59,7 @@ class Reconstruction:
         if self.pupil is not None:
             self._ticks += 1
             if self._ticks % _CHECK_EVERY == 0:
-                self.pupil.check(config)
+                self.pupil.check(now, config)
             if self.pupil.lost:
                 self._familiar, self.pupil = self.pupil.familiar, None
             elif self._ticks % _CHECK_EVERY == 0:

@@ -44,6 +44,23 @@ def test_when_all_cameras_are_dead_the_figure_goes_grey_within_a_second_and_come
     assert np.nanmean(errors_mm(back, gym.truth)) < 45.0
 
 
+def test_a_pupil_who_leaves_is_let_go_and_the_next_one_is_chosen_at_once() -> None:
+    following = Person(centre_m=(0.8, -0.6), radius_m=0.3, phase=0.4)
+    gym = replace(GYM.quiet(), bystanders=((following, (0, 1, 2, 3)),))
+
+    def present(event: Observation) -> Observation:
+        seconds = (event.t_mid_ns - T0_NS) * 1e-9
+        track = 1 if seconds < 2.0 else 10 if seconds > 3.0 else None
+        return msgspec.structs.replace(event, persons=tuple(person for person in event.persons if person.track == track))
+
+    played = play(gym.rig, [event if isinstance(event, Tick) else present(event) for event in gym.events()])
+    found = {round(tick / 30, 3): output.found for tick, output in enumerate(out for out in played.outputs if out.searching)}
+    assert not any(value for seconds, value in found.items() if 2.8 < seconds < 3.0), "nobody is there, and the pupil is held"
+    assert all(value for seconds, value in found.items() if seconds > 3.6)
+    late = after(played.live, 3.7)
+    assert np.nanmean(errors_mm(late, lambda t_ns: following.joints((t_ns - T0_NS) * 1e-9))) < 45.0
+
+
 def test_joints_that_nobody_confirms_stay_bounded() -> None:
     gym = replace(GYM, dead=tuple((camera, 2.0, 9.0) for camera in range(4)))
     error = errors_mm(after(play(gym.rig, gym.events()).live, 2.0), gym.truth)
