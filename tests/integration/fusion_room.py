@@ -1,10 +1,11 @@
-"""Fusion's loop in a thread on the bus in memory, a synthetic pupil before its cameras, and its log written to a lesson file."""
+"""Fusion's loop in a thread, a synthetic pupil before its cameras, and its log written to a lesson file."""
 
 import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
@@ -15,8 +16,7 @@ from models.messages.health import CameraHealth, Health
 from models.messages.lesson import FusionLog, SegmentRequest
 from models.messages.motion import Motion
 from models.messages.observation import Crop, Observation, Person
-from models.process import ProcessContext, Resources, Subscription
-from services.bus.memory import MemoryBus, MemoryRouter
+from models.process import Bus, ProcessContext, Resources, Subscription
 from services.fusion.process import FusionLoop
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_header import LessonHeader
@@ -51,11 +51,17 @@ def header(title: str = "7b, throwing", kinebox: str = "0.1.0", machine: str = "
     )
 
 
+class Opens(Protocol):
+    """What buses come from: the memory's router, or one on real sockets, where fusion comes first."""
+
+    def open(self) -> Bus: ...
+
+
 class Cameras:
     """Four cameras that look at a walking, throwing pupil, with noise; they publish until they are closed."""
 
-    def __init__(self, router: MemoryRouter) -> None:
-        self._bus = router.open()
+    def __init__(self, room: Opens) -> None:
+        self._bus = room.open()
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._film, name="cameras", daemon=True)
         self._thread.start()
@@ -88,8 +94,8 @@ class Cameras:
 class LogRecorder:
     """Asks fusion for its log and writes what comes, as the recorder does; keeps the live motions beside."""
 
-    def __init__(self, router: MemoryRouter, writer: LessonWriter) -> None:
-        self._bus = router.open()
+    def __init__(self, room: Opens, writer: LessonWriter) -> None:
+        self._bus = room.open()
         self._log: Subscription = self._bus.subscribe(topics.fusion_log(), keep=1000)
         self._live: Subscription = self._bus.subscribe(topics.motion("live"), keep=100_000)
         self._writer = writer
@@ -120,10 +126,10 @@ class LogRecorder:
 
 
 @contextmanager
-def fusion(router: MemoryRouter, data: Path) -> Iterator[MemoryBus]:
+def fusion(room: Opens, data: Path) -> Iterator[Bus]:
     """Fusion's process in this room, until the end of the block."""
     stop = threading.Event()
-    bus = router.open()
+    bus = room.open()
     context = ProcessContext(
         name="fusion",
         camera=None,

@@ -1,0 +1,233 @@
+"""The recorder as a process of its own, on real sockets, beside fusion's loop: asked, killed, restarted, out of disk."""
+
+import os
+import resource
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+import pytest
+
+from models.camera.rig import encode_rig
+from models.config.site import BusConfig, LessonsConfig
+from models.errors import USER_ERROR_CODE
+from models.messages import codec, topics
+from models.messages.health import Health, RecorderHealth
+from models.messages.lesson import FusionLog, LessonRequest
+from models.process import Bus
+from services.bus.zenoh_bus import open_client, open_router
+from services.fusion.config import PRESETS
+from services.lesson.index import LessonIndex
+from services.lesson.lesson_reader import LessonPart, open_lesson
+from services.lesson.replay import compare, replay
+from services.support.site_toml import render
+from tests.integration.fusion_room import RIG, SITE, Cameras, fusion
+from tests.integration.waiting import free_port, until
+
+pytestmark = pytest.mark.slow
+
+ROOT = Path(__file__).parents[2]
+PARTS_A_SECOND = 2
+LIMITED = """
+import os, resource, sys
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[1]), int(sys.argv[1])))
+os.execv(sys.argv[2], sys.argv[2:])
+"""
+
+
+class ZenohRoom:
+    """Opens buses on one port; the first one is the router."""
+
+    def __init__(self) -> None:
+        self.endpoint = f"tcp/127.0.0.1:{free_port()}"
+        self._routed = False
+
+    def open(self) -> Bus:
+        if self._routed:
+            client = open_client(self.endpoint, threading.Event())
+            assert client is not None
+            return client
+        self._routed = True
+        return open_router(self.endpoint)
+
+
+class Box:
+    """Fusion and cameras in this process; whoever listens; and recorders that are started, killed and started again."""
+
+    def __init__(self, folder: Path, lessons: LessonsConfig) -> None:
+        self.room = ZenohRoom()
+        self.data = folder / "data"
+        self.lessons = self.data / lessons.folder
+        (folder / "rig.toml").write_bytes(encode_rig(RIG, "synthetic"))
+        self.site = folder / "site.toml"
+        parts = {name: getattr(SITE, name) for name in SITE.__struct_fields__}
+        self.site.write_text(render(type(SITE)(**parts | {"bus": BusConfig(self.room.endpoint), "lessons": lessons})))
+        self.run_ns = time.monotonic_ns()
+        self.heard: list[FusionLog] = []
+        self.newest: Health | None = None
+
+    @contextmanager
+    def running(self) -> Iterator["Box"]:
+        with ExitStack() as stack:
+            stack.enter_context(fusion(self.room, self.data))
+            cameras = Cameras(self.room)
+            stack.callback(cameras.close)
+            self.bus = self.room.open()
+            stack.callback(self.bus.close)
+            self._logs = self.bus.subscribe(topics.fusion_log(), keep=10_000)
+            self._healths = self.bus.subscribe(topics.health("recorder"), keep=10_000)
+            yield self
+
+    @contextmanager
+    def recorder(self, run_ns: int | None = None, file_limit: int = resource.RLIM_INFINITY) -> Iterator[subprocess.Popen[bytes]]:
+        """A recorder as the supervisor starts it; it is killed at the end of the block unless it has ended."""
+        command = [sys.executable, "-P", "-m", "services.cli.child", "recorder", "--site", str(self.site), "--data", str(self.data)]
+        command += ["--start-ns", str(run_ns or self.run_ns), "--parent", str(os.getpid())]
+        limited = [sys.executable, "-c", LIMITED, str(file_limit), *command]
+        process = subprocess.Popen(limited, cwd=ROOT, env=dict(os.environ) | {"PYTHONPATH": str(ROOT)})
+        try:
+            yield process
+        finally:
+            process.kill()
+            process.wait()
+
+    def wish(self, action: str, title: str = "") -> None:
+        """Ask for a lesson, again and again, until it has begun or ended."""
+
+        def done() -> bool:
+            self.bus.publish(topics.lesson_request(), codec.encode(LessonRequest("start" if action == "start" else "stop", title)))
+            self.listen(0.3)
+            return self.newest is not None and bool(self.newest.recorder and self.newest.recorder.lesson) == (action == "start")
+
+        until(done, f"the lesson to {action}")
+
+    def wait_recorded(self, pid: int, parts: int) -> RecorderHealth:
+        """Until the recorder of that process id says that so many parts' worth is safe."""
+
+        def done() -> bool:
+            self.listen(0.2)
+            newest = self.newest
+            recorder = newest.recorder if newest is not None and newest.pid == pid else None
+            return recorder is not None and recorder.recorded_s >= parts / PARTS_A_SECOND
+
+        until(done, f"{parts} parts to be recorded; newest: {self.newest}")
+        assert self.newest is not None
+        assert self.newest.recorder is not None
+        return self.newest.recorder
+
+    def listen(self, timeout_s: float) -> None:
+        """Take in what the recorder and fusion said."""
+        delivery = self._healths.receive(timeout_s)
+        while delivery is not None:
+            self.newest = codec.decode(delivery.payload, Health)
+            delivery = self._healths.receive(0.0)
+        while (logged := self._logs.receive(0.0)) is not None:
+            self.heard.append(codec.decode(logged.payload, FusionLog))
+
+    def parts(self, lesson: str) -> list[LessonPart]:
+        with open_lesson(self.lessons / f"{lesson}.mcap") as opened:
+            return list(opened.parts())
+
+    def require_replay(self, lesson: str, segments: int) -> None:
+        """The file gives the motion again that fusion published, to the last bit."""
+        with open_lesson(self.lessons / f"{lesson}.mcap") as opened:
+            found = compare(replay(opened.parts(), opened.header.rig(), PRESETS[opened.header.preset]))
+        assert found.first is None
+        assert found.segments == segments
+        assert found.equal == found.compared > 0
+
+
+@pytest.fixture
+def box(tmp_path: Path) -> Iterator[Box]:
+    with Box(tmp_path, LessonsConfig()).running() as running:
+        yield running
+
+
+def test_a_lesson_is_recorded_on_request_and_replays_to_the_last_bit(box: Box) -> None:
+    with box.recorder() as process:
+        box.wish("start", "7b, throwing")
+        lesson = box.wait_recorded(process.pid, parts=8).lesson
+        box.wish("stop")
+        (row,) = LessonIndex(box.lessons).lessons()
+        assert (row.lesson, row.title, row.state, row.gaps, row.segments) == (lesson, "7b, throwing", "finished", 0, 1)
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(30.0) == 0
+    heard = {(part.segment_ns, part.sequence): part.entries for part in box.heard}
+    for part in box.parts(lesson):
+        assert heard[part.segment_ns, part.sequence] == part.entries, "what is on the disk is not what was on the bus"
+    box.require_replay(lesson, segments=1)
+
+
+def test_kill_9_loses_at_most_a_second_and_the_lesson_goes_on_after_the_restart(box: Box) -> None:
+    with box.recorder() as process:
+        box.wish("start", "killed")
+        safe = box.wait_recorded(process.pid, parts=6)
+        process.kill()
+        process.wait()
+    box.listen(0.0)
+    heard = len(box.heard)
+    with box.recorder() as again:
+        after = box.wait_recorded(again.pid, parts=round(safe.recorded_s * PARTS_A_SECOND) + 6)
+        assert (after.lesson, after.title, after.gaps) == (safe.lesson, "killed", 1)
+        again.send_signal(signal.SIGTERM)
+        assert again.wait(30.0) == 0
+    parts = box.parts(safe.lesson)
+    first = [part for part in parts if part.segment_ns == parts[0].segment_ns]
+    assert len(first) >= heard - PARTS_A_SECOND
+    assert first[-1].entries[-1].t_ns - first[0].entries[0].t_ns >= (safe.recorded_s - 0.1) * 1e9, "less is there than was said"
+    assert [part.gap for part in parts if part.gap] == ["the recorder was started again"]
+    box.require_replay(safe.lesson, segments=2)
+
+
+def test_after_a_crash_of_the_whole_box_the_lesson_is_completed_at_the_next_start(box: Box) -> None:
+    with box.recorder() as process:
+        box.wish("start", "crashed")
+        safe = box.wait_recorded(process.pid, parts=4)
+    assert [row.state for row in LessonIndex(box.lessons).lessons()] == ["unfinished"]
+    with box.recorder(run_ns=time.monotonic_ns()):
+        until(lambda: [row.state for row in LessonIndex(box.lessons).lessons()] == ["finished"], "the lesson to be completed")
+    (row,) = LessonIndex(box.lessons).lessons()
+    assert row.seconds >= safe.recorded_s - 0.1
+    box.require_replay(safe.lesson, segments=1)
+
+
+def test_a_disk_that_takes_no_more_ends_the_lesson_with_a_reason_and_keeps_what_was_safe(box: Box) -> None:
+    with box.recorder(file_limit=120_000) as process:
+        box.wish("start", "too long")
+        assert box.newest is not None
+        assert box.newest.recorder is not None
+        lesson = box.newest.recorder.lesson
+
+        def said() -> bool:
+            box.listen(0.2)
+            return box.newest is not None and box.newest.state == "degraded" and "File too large" in box.newest.reason
+
+        until(said, "the recorder to say that it cannot write")
+        assert process.poll() is None, "the recorder must live on"
+        assert box.newest.recorder is not None
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(30.0) == 0
+    with box.recorder(run_ns=time.monotonic_ns()):
+        until((box.lessons / f"{lesson}.mcap").exists, "the lesson to be completed")
+    box.require_replay(lesson, segments=1)
+
+
+def test_two_recorders_never_work_in_one_folder(box: Box) -> None:
+    with box.recorder() as process:
+        box.wish("start", "mine")
+        with box.recorder() as other:
+            assert other.wait(60.0) == USER_ERROR_CODE
+        assert process.poll() is None
+
+
+def test_an_automatic_recorder_records_from_the_start_of_the_box(tmp_path: Path) -> None:
+    with Box(tmp_path, LessonsConfig(automatic=True)).running() as box, box.recorder() as process:
+        lesson = box.wait_recorded(process.pid, parts=2).lesson
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(30.0) == 0
+        assert box.parts(lesson)
