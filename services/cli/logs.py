@@ -8,6 +8,7 @@ import time
 import tomllib
 from collections import deque
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import tomlkit
@@ -28,16 +29,15 @@ _AGO = re.compile(r"[\dhms]*[hms]")
 
 
 def show(data: Path, query: Query, most: int, *, json: bool, follow: bool) -> None:
-    """Print the last `most` lines that are wanted; then, if asked to, every further one as it is written."""
+    """Print the last `most` lines that are wanted; then, if asked to, every further one as it is written, until Ctrl-C."""
     reader = LogReader(log_folder(data))
     if not follow:
         _require_log(data)
-    # What is wanted of a damaged line depends on the line before it, so one selection goes over the past and what follows.
-    past = deque(query.select(_whole_log(reader, torn=not follow)), maxlen=most)
-    _print(past, json=json)
-    while follow:
-        _print(query.select(reader.poll()), json=json)
-        time.sleep(_LOOK_AGAIN_S)
+    _print(deque(query.select(_unread(reader, torn=not follow)), maxlen=most), json=json)
+    with suppress(KeyboardInterrupt):
+        while follow:
+            time.sleep(_LOOK_AGAIN_S)
+            _print(query.select(_unread(reader, torn=False)), json=json)
 
 
 def pack(file: Path, data: Path, query: Query, site: Path | None) -> str:
@@ -52,7 +52,7 @@ def pack(file: Path, data: Path, query: Query, site: Path | None) -> str:
     _require_log(data)
     site = site or _site_of_last_start(data)
     toml = None if site is None else _site_without_secrets(site)
-    lines = query.select(_whole_log(LogReader(log_folder(data)), torn=True))
+    lines = query.select(_unread(LogReader(log_folder(data)), torn=True))
     manifest = export(file, lines, toml, _told(query), dt.datetime.now(dt.UTC))
     included = f"the site file {site}" if site is not None else "no site file (name it with --site)"
     return f"{file} holds {manifest['lines']['count']} lines and {included}; no pictures, keypoints or passwords\n"
@@ -86,7 +86,7 @@ def parse_since(text: str, now: dt.datetime) -> dt.datetime:
         ) from error
 
 
-def _whole_log(reader: LogReader, *, torn: bool) -> Iterator[Line]:
+def _unread(reader: LogReader, *, torn: bool) -> Iterator[Line]:
     try:
         yield from reader.poll()
         if torn:
@@ -116,7 +116,7 @@ def _print(lines: Iterable[Line], *, json: bool) -> None:
 def _site_of_last_start(data: Path) -> Path | None:
     sites = [
         str(line.record.fields.get("site", ""))
-        for line in _whole_log(LogReader(log_folder(data)), torn=False)
+        for line in _unread(LogReader(log_folder(data)), torn=False)
         if line.record is not None and line.record.event == STARTED
     ]
     file = Path(sites[-1]) if sites and sites[-1] else None

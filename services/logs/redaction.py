@@ -21,8 +21,9 @@ _KEYS = "|".join(SECRET_KEYS)
 _SECRET_KEY = re.compile(rf"(?:^|[_.-])(?:{_KEYS})s?(?:$|[_.-])", re.IGNORECASE)
 _IN_ADDRESS = re.compile(r"(?<=://)[^\s'\"]*@")
 _IN_TEXT = re.compile(rf"((?<![A-Za-z0-9])(?:{_KEYS})s?['\"]?\s*[=:]\s*)(\"[^\"]*\"|'[^']*'|[^\s,;&'\"]+)", re.IGNORECASE)
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_NUMBERS = re.compile(rf"(?<![\w.])(?:{_NUMBER}(?:\s*[,;\[\]()\s]\s*)+){{{MOST_NUMBERS},}}(?:{_NUMBER})?(?![\w])")
+# Possessive, so that no text takes longer than its length.
+_NUMBER = r"[-+]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][-+]?\d++)?"
+_NUMBERS = re.compile(rf"(?<![\w.])(?:{_NUMBER}[,;\[\]()\s]++){{{MOST_NUMBERS},}}+(?:{_NUMBER})?")
 _WORD = re.compile(rf"[\w+/=-]{{{LONGEST_WORD + 1},}}")
 
 
@@ -43,5 +44,10 @@ def redacted_text(text: str) -> str:
     """A text without what has to stay."""
     text = _IN_ADDRESS.sub(f"{_SECRET}@", text)
     text = _IN_TEXT.sub(rf"\g<1>{_SECRET}", text)
-    text = _NUMBERS.sub(lambda found: f"[{len(re.findall(_NUMBER, found[0]))} numbers]", text)
+    text = _NUMBERS.sub(_counted, text)
     return _WORD.sub(lambda found: f"[{len(found[0])} characters]", text)
+
+
+def _counted(numbers: re.Match[str]) -> str:
+    gap = " " if numbers[0][-1].isspace() else ""
+    return f"[{len(re.findall(_NUMBER, numbers[0]))} numbers]{gap}"
