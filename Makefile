@@ -15,7 +15,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks footage web kernels lock clean distclean bench-start bench-box bench-footage
+.PHONY: help run test check setup networks footage web kernels lock clean distclean bench-start bench-box bench-footage bench-lessons
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
@@ -81,6 +81,9 @@ bench-start: setup ## Seconds from the command to the figure in the browser, eve
 
 bench-box: setup ## Live rate, latency, CPU and memory of the whole box, 300 s and at half the CPU
 	$(PYTHON) -m tests.bench.box --site $(SITE) --data $(DATA)
+
+bench-lessons: setup ## What recording costs: the recorder's CPU, and the size of a lesson of 45 minutes
+	$(PYTHON) -m tests.bench.lessons --site $(SITE) --data $(DATA)
 
 build/peers/%/.ready: tests/bench/peers/%/requirements.lock | $(VENV)/.ready
 	@echo "Installing $* in an environment of its own (some minutes) ..."

@@ -1,6 +1,8 @@
 """How a lesson lies in its MCAP file: the channels, and the mark at the beginning of every chunk.
 
 The file is: header, metadata (`lesson_header`), schemas and channels, then a chunk for each part of fusion's log, then the summary.
+There are no indexes of messages: a chunk is half a second, and they would be a twentieth of the file.
+
 In a chunk come first its mark and then the part's entries in fusion's order. Each message is numbered through the whole file; its
 publish time is the entry's own time, its log time the latest of any entry until then, since a tick may be dated a little before
 the observation that was taken in ahead of it, and log times must not go back.

@@ -34,7 +34,7 @@ from models.messages.lesson import FusionLog
 from services.lesson import lesson_header
 from services.lesson.layout import CHANNEL_OF, CHANNELS, MARK, PART_SUFFIX, PROFILE, SCHEMAS, SUFFIX, Mark
 from services.lesson.lesson_header import LessonHeader
-from services.lesson.mcap_records import MAGIC, encode, encode_messages, message_indexes
+from services.lesson.mcap_records import MAGIC, encode, encode_messages
 
 _COMPRESSION = "zstd"
 _LEVEL = 6
@@ -66,12 +66,9 @@ class Contents:
     gaps: int = 0
 
     def take_chunk(self, start: int, length: int, chunk: Chunk, messages: Sequence[Message]) -> None:
-        """Note a chunk that lies at byte `start`, its message indexes behind it."""
-        offsets, at = {}, start + length
-        for index in message_indexes(messages):
-            offsets[index.channel_id] = at
-            at += len(encode(index))
-            self.counts[index.channel_id] = self.counts.get(index.channel_id, 0) + len(index.records)
+        """Note a chunk that lies at byte `start`."""
+        for message in messages:
+            self.counts[message.channel_id] = self.counts.get(message.channel_id, 0) + 1
         self.chunks.append(
             ChunkIndex(
                 chunk_length=length,
@@ -79,8 +76,8 @@ class Contents:
                 compression=chunk.compression,
                 compressed_size=len(chunk.data),
                 message_end_time=chunk.message_end_time,
-                message_index_length=at - start - length,
-                message_index_offsets=offsets,
+                message_index_length=0,
+                message_index_offsets={},
                 message_start_time=chunk.message_start_time,
                 uncompressed_size=chunk.uncompressed_size,
             )
@@ -164,9 +161,8 @@ class LessonWriter:
             messages.append(Message(CHANNEL_OF[entry.kind], log_time_ns, entry.payload, entry.t_ns, number))
         chunk = _chunk(messages)
         body = encode(chunk)
-        indexes = [encode(index) for index in message_indexes(messages)]
         start = contents.end
-        self._write(body + b"".join(indexes))
+        self._write(body)
         contents.take_chunk(start, len(body), chunk, messages)
         contents.gaps += bool(gap)
 

@@ -14,7 +14,7 @@ import zstandard
 from mcap.data_stream import ReadDataStream, RecordBuilder
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Chunk, DataEnd, McapRecord, Message, MessageIndex
+from mcap.records import Chunk, DataEnd, McapRecord, Message
 
 MAGIC = b"\x89MCAP0\r\n"
 _HEAD = struct.Struct("<BQ")
@@ -124,16 +124,6 @@ def encode_messages(messages: Sequence[Message]) -> bytes:
         parts.append(_MESSAGE.pack(message.channel_id, message.sequence, message.log_time, message.publish_time))
         parts.append(message.data)
     return b"".join(parts)
-
-
-def message_indexes(messages: Sequence[Message]) -> list[MessageIndex]:
-    """Where the messages lie in the chunk that they are the content of: one record a channel, as they follow the chunk."""
-    indexes: dict[int, MessageIndex] = {}
-    at = 0
-    for message in messages:
-        indexes.setdefault(message.channel_id, MessageIndex(message.channel_id, [])).records.append((message.log_time, at))
-        at += _HEAD.size + _MESSAGE.size + len(message.data)
-    return list(indexes.values())
 
 
 def encode(*records: McapRecord) -> bytes:

@@ -10,14 +10,14 @@ from typing import BinaryIO
 
 import structlog
 from mcap.opcode import Opcode
-from mcap.records import Chunk, Message, MetadataIndex
+from mcap.records import Chunk, MetadataIndex
 
 from models.errors import UserError
 from services.lesson import lesson_header
 from services.lesson.layout import PART_SUFFIX
 from services.lesson.lesson_file import Contents, LessonWriter
 from services.lesson.lesson_reader import PartDecoder, read_header
-from services.lesson.mcap_records import DamageError, Place, encode, message_indexes, messages, parse, walk
+from services.lesson.mcap_records import DamageError, messages, parse, walk
 
 DAMAGED_SUFFIX = ".damaged"
 _LARGEST_TAIL = 2 * 2**20
@@ -84,16 +84,18 @@ def reopen(path: Path) -> LessonWriter:
 
 def survey(file: BinaryIO) -> Contents:
     """What a file with a good header holds, up to its first damage or, if there is none, its summary."""
-    contents, chunk = Contents(), _WholeChunk()
+    contents, decoder = Contents(), PartDecoder()
     file.seek(0)
     try:
         for place in walk(file):
             if place.opcode == Opcode.METADATA:
                 contents.metadata = MetadataIndex(place.start, place.end - place.start, lesson_header.NAME)
-            if place.opcode in _BEGINNING and not contents.chunks:
-                contents.end, contents.checksum = place.end, place.checksum
-            elif not chunk.take(place, contents):
+            if place.opcode == Opcode.CHUNK:
+                contents.gaps += bool(decoder.decode(place).gap)
+                contents.take_chunk(place.start, place.end - place.start, parse(Chunk, place), messages(place))
+            elif contents.chunks or place.opcode not in _BEGINNING:
                 break
+            contents.end, contents.checksum = place.end, place.checksum
     except DamageError:
         pass  # Here the file ends.
     return contents
@@ -105,32 +107,3 @@ def _finish(writer: LessonWriter) -> None:
     except OSError as error:
         writer.close()
         log.warning("a recovered lesson could not be finished", lesson=writer.path.name, reason=str(error))
-
-
-class _WholeChunk:
-    """Waits for a chunk and all its message indexes, which were written in one piece with it."""
-
-    def __init__(self) -> None:
-        self._decoder = PartDecoder()
-        self._chunk: tuple[Place, tuple[Message, ...]] | None = None
-        self._indexes: list[bytes] = []
-        self._gap = False
-
-    def take(self, place: Place, contents: Contents) -> bool:
-        """The next record of the file, which `contents` gets once the chunk is whole; False if it belongs to no chunk."""
-        if place.opcode == Opcode.CHUNK and not self._indexes:
-            self._gap = bool(self._decoder.decode(place).gap)
-            found = messages(place)
-            self._chunk = (place, found)
-            self._indexes = [encode(index) for index in message_indexes(found)]
-            return True
-        if self._chunk is None or place.opcode != Opcode.MESSAGE_INDEX or not self._indexes:
-            return False
-        if not self._indexes.pop(0).endswith(place.body):
-            return False
-        if not self._indexes:
-            chunk, found = self._chunk
-            contents.take_chunk(chunk.start, chunk.end - chunk.start, parse(Chunk, chunk), found)
-            contents.end, contents.checksum = place.end, place.checksum
-            contents.gaps += self._gap
-        return True
