@@ -7,13 +7,15 @@ import msgspec
 import structlog
 
 from models.messages import codec, topics
+from models.messages.addressed import read_health, read_observation
 from models.messages.control import ViewControl
-from models.messages.health import CameraHealth, FusionHealth, Health
+from models.messages.health import CameraHealth, FusionHealth
 from models.messages.lesson import SegmentRequest
 from models.messages.motion import Motion
 from models.messages.observation import Observation
 from models.process import Delivery, ProcessContext
 from services.fusion import governor
+from services.fusion.agreement import Agreement, Disagreement
 from services.fusion.config import PRESETS
 from services.fusion.governor import GovernorState, Load
 from services.fusion.log import SegmentLog
@@ -71,6 +73,7 @@ class FusionLoop:
         self._config = PRESETS[context.site.fusion.preset]
         self._state = initial_state(context.rig)
         self._log = SegmentLog()
+        self._agreement = Agreement(context.rig, self._config.sighting)
         self._governor = GovernorState()
         self._names = context.rig.names
         self._observations = {topics.observation(name) for name in self._names}
@@ -115,14 +118,15 @@ class FusionLoop:
         now_ns = time.monotonic_ns()
         try:
             if delivery.topic in self._observations:
-                observation = _observation(delivery)
+                observation = read_observation(delivery.topic, delivery.payload)
                 self._log.add("observation", now_ns, delivery.payload)
                 self._step(observation)
+                self._agreement.observe(observation)
                 return
             if delivery.topic == topics.segment_request():
                 self._begin_segment(codec.decode(delivery.payload, SegmentRequest), now_ns)
                 return
-            camera = codec.decode(delivery.payload, Health).camera
+            camera = read_health(delivery.topic, delivery.payload).camera
             self._log.add("health", now_ns, delivery.payload)
         except codec.CodecError as error:
             if self._second.rejected == 0:  # one a second says enough, and fills no disk
@@ -187,7 +191,7 @@ class FusionLoop:
         used_cores = self._cpu.used_cores()
         if alive or self._governor.started or now_ns - self._began_ns > CAMERA_SILENT_NS:
             self._govern(Load(self._cpu.granted_cores, used_cores, tuple(alive.values())), now_ns)
-        reason = _trouble([name for name in self._names if name not in alive], ignored, second.rejected)
+        reason = _trouble([name for name in self._names if name not in alive], ignored, second.rejected, self._agreement.judge())
         fusion = FusionHealth(
             live_hz=second.live / seconds,
             step_ms=second.spent_ns * 1e-6 / max(second.ticks, 1),
@@ -206,19 +210,14 @@ class FusionLoop:
             log.info("governor", rate_hz=level.rate_hz, network=level.network, used_cores=round(load.used_cores, 2))
 
 
-def _observation(delivery: Delivery) -> Observation:
-    """The observation of a delivery, which must be of the camera that the topic names."""
-    observation = codec.decode(delivery.payload, Observation)
-    if topics.observation(observation.camera) != delivery.topic:
-        raise codec.CodecError(f"an observation of camera '{observation.camera}'")
-    return observation
-
-
-def _trouble(missing: list[str], ignored: dict[tuple[str, str], int], rejected: int) -> str:
+def _trouble(
+    missing: list[str], ignored: dict[tuple[str, str], int], rejected: int, disagreement: Disagreement | None = None
+) -> str:
     """What is wrong, in one line; empty if nothing is. A few observations are late at every seam."""
     troubles = [f"no word from {', '.join(missing)}"] if missing else []
     troubles += [
         f"{camera} is not fused: its pictures are {reason}" for (camera, reason), n in ignored.items() if n > _LATE_AT_SEAM
     ]
+    troubles += [str(disagreement)] if disagreement is not None else []
     troubles += [f"{rejected} messages could not be read"] if rejected else []
     return "; ".join(troubles)

@@ -43,16 +43,16 @@ class Room:
     logs: Subscription
     sequence: int = 0
 
-    def film(self, epoch: int = 0, camera_named: str | None = None) -> None:
-        """One picture of every camera, now."""
+    def film(self, epoch: int = 0, camera_named: str | None = None, shown_to: dict[str, str] | None = None) -> None:
+        """One picture of every camera, now; `shown_to` says whose plug each camera is in."""
         t_ns = time.monotonic_ns()
         joints = PUPIL.joints(1.0)
         for camera in RIG:
             pixels = camera.project(joints).astype(np.float32)
             person = Person(1, Crop(640.0, 360.0, 400.0), pixels, np.full(17, 2, np.float32), np.full(17, 0.9, np.float32))
-            name = camera_named or camera.name
+            name = camera_named or (shown_to or {}).get(camera.name, camera.name)
             observation = Observation(name, epoch, self.sequence, self.sequence, t_ns, t_ns, "thunder", (person,))
-            self.bus.publish(topics.observation(camera.name), codec.encode(observation))
+            self.bus.publish(topics.observation(camera.name if camera_named else name), codec.encode(observation))
         self.sequence += 1
 
     def newest_live(self) -> Motion:
@@ -184,6 +184,21 @@ def test_a_camera_whose_pictures_are_not_fused_is_named(tmp_path: Path) -> None:
             return fusion.ignored.get("cam1", 0) > 0 and "cam1 is not fused" in health.reason and health.state == "degraded"
 
         until(named, "cam1 named as not fused")
+
+
+@pytest.mark.slow
+def test_cameras_that_were_exchanged_are_named(tmp_path: Path) -> None:
+    others = {"cam0": "cam1", "cam1": "cam0", "cam2": "cam2", "cam3": "cam3"}
+    with running(tmp_path) as room:
+
+        def named() -> bool:
+            for _ in range(10):
+                room.film(shown_to=others)
+                time.sleep(0.05)
+            health, _ = room.fusion_health()
+            return "cam0 and cam1 seem to be exchanged" in health.reason and health.state == "degraded"
+
+        until(named, "cam0 and cam1 named as exchanged")
 
 
 def test_a_word_of_health_of_an_unknown_camera_takes_no_part_in_the_plan(tmp_path: Path) -> None:

@@ -1,0 +1,184 @@
+"""Whether the cameras see what the calibration says: exchanged plugs, a wrong file or a camera that was knocked.
+
+Two cameras that see one person see each joint on the other's epipolar line, whoever is the pupil and wherever he is. So each
+pair is judged by itself, by the median distance from those lines over some seconds, as a share of the body's size in the picture
+(measured on the built-in footage: 1 % with the right calibration, 3 to 40 % with two cameras exchanged). Cameras outside the
+largest group of pairs that agree are named, and whether exchanging two of them would make all agree.
+"""
+
+from collections import deque
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from models.arrays import Float
+from models.camera.rig import Rig
+from models.messages.observation import Observation
+from services.fusion.config import SightingConfig
+from services.fusion.views import Sighting, Views, sightings
+
+TOLERANCE = 0.03
+"""Of the body's size; at 1.7 m about 5 cm."""
+PERIOD_S = 0.25
+"""A pair is compared no more often."""
+NEEDED, KEPT = 24, 40
+"""Comparisons before a pair is judged, and those that it is judged by."""
+_MAX_GAP_S = 0.35
+_MIN_JOINTS = 6
+
+
+@dataclass(frozen=True, eq=False)
+class _Match:
+    """The two persons of two pictures who fit best: their joints (n, 2) in the pixels of either, at one instant."""
+
+    first_px: Float
+    second_px: Float
+    distance: float
+
+
+@dataclass(frozen=True)
+class Disagreement:
+    """Cameras that do not agree with the calibration.
+
+    Attributes:
+        strangers: those outside the largest group of cameras that agree; all if no group is the largest.
+        exchanged: each two whose exchange would make every pair agree; in a symmetric room there may be more than one.
+        contradictory: whether it cannot be told who is right.
+    """
+
+    strangers: tuple[str, ...]
+    exchanged: tuple[tuple[str, str], ...]
+    contradictory: bool
+
+    def __str__(self) -> str:
+        if self.exchanged:
+            pairs = ", or ".join(f"{a} and {b}" for a, b in self.exchanged)
+            return f"{pairs} seem to be exchanged: exchange their plugs, or their files in the site file"
+        names = ", ".join(self.strangers)
+        if self.contradictory:
+            return f"{names} do not agree with one another about where people are: calibrate anew, or correct which camera is which"
+        verb = "does" if len(self.strangers) == 1 else "do"
+        remedy = "move back what was moved, calibrate anew, or correct which camera is which"
+        return f"{names} {verb} not agree with the calibration: {remedy}"
+
+
+class Agreement:
+    """Takes every observation, compares now and then, and tells when asked."""
+
+    def __init__(self, rig: Rig, config: SightingConfig) -> None:
+        self._views = Views.of(rig)
+        self._config = config
+        self._newest: list[deque[tuple[float, tuple[Sighting, ...]]]] = [deque(maxlen=2) for _ in rig]
+        self._epochs = [0] * len(self._views)
+        self._compared_s: dict[tuple[int, int], float] = {}
+        self._matches: dict[tuple[int, int], deque[_Match]] = {
+            pair: deque(maxlen=KEPT) for pair in combinations(range(len(self._views)), 2)
+        }
+
+    def observe(self, observation: Observation) -> None:
+        """Compare a picture with those of the other cameras that were taken since this camera's last one."""
+        camera, t_s = self._views.index[observation.camera], observation.t_mid_ns * 1e-9
+        track = self._newest[camera]
+        if observation.epoch != self._epochs[camera]:
+            self._epochs[camera] = observation.epoch
+            track.clear()
+        if track and t_s <= track[-1][0]:
+            return
+        track.append((t_s, sightings(observation, self._views, self._config)))
+        if len(track) < 2 or t_s - track[0][0] > _MAX_GAP_S:
+            return
+        for other, theirs in enumerate(self._newest):
+            pair = min(camera, other), max(camera, other)
+            if other == camera or not theirs or self._epochs[other] != observation.epoch:
+                continue
+            if not track[0][0] <= theirs[-1][0] <= t_s:
+                continue
+            if theirs[-1][0] - self._compared_s.get(pair, -np.inf) >= PERIOD_S:
+                self._compare(pair, theirs[-1][1], self._at(theirs[-1][0], camera), swapped=other > camera)
+                self._compared_s[pair] = theirs[-1][0]
+
+    def judge(self) -> Disagreement | None:
+        """Who does not agree; None while all do, or as long as it cannot be told."""
+        judged = {pair: self._distance(pair) < TOLERANCE for pair, seen in self._matches.items() if len(seen) >= NEEDED}
+        groups = _groups({camera for pair in judged for camera in pair}, [pair for pair, agree in judged.items() if agree])
+        if len(groups) < 2:
+            return None
+        *smaller, largest = sorted(groups, key=len)
+        tied = len(smaller[-1]) == len(largest)
+        strangers = sorted(camera for group in groups for camera in group if tied or group is not largest)
+        exchanged = [two for two in combinations(strangers, 2) if self._would_agree(*two, list(judged))]
+        names = self._views.rig.names
+        return Disagreement(tuple(names[i] for i in strangers), tuple((names[a], names[b]) for a, b in exchanged), tied)
+
+    def _at(self, t_s: float, camera: int) -> list[Sighting]:
+        """The persons of a camera at an instant between its two newest pictures, whom it tracked in both."""
+        (before_s, before), (after_s, after) = self._newest[camera]
+        share, earlier = (t_s - before_s) / (after_s - before_s), {person.track: person for person in before}
+        return [
+            Sighting(
+                camera,
+                person.track,
+                t_s,
+                (1 - share) * earlier[person.track].points_px + share * person.points_px,
+                person.sigma_px,
+                earlier[person.track].usable & person.usable,
+            )
+            for person in after
+            if person.track in earlier
+        ]
+
+    def _compare(self, pair: tuple[int, int], theirs: tuple[Sighting, ...], own: list[Sighting], *, swapped: bool) -> None:
+        """Keep the pair of persons who fit best, if there is any pair that can be compared."""
+        first, second = (own, theirs) if swapped else (theirs, own)
+        matches = []
+        for one in first:
+            for two in second:
+                usable = one.usable & two.usable
+                if usable.sum() >= _MIN_JOINTS:
+                    points = one.points_px[usable], two.points_px[usable]
+                    matches.append(_Match(*points, epipolar_distance(self._fundamental(*pair), *points)))
+        if matches:
+            self._matches[pair].append(min(matches, key=lambda match: match.distance))
+
+    def _distance(self, pair: tuple[int, int]) -> float:
+        return float(np.median([match.distance for match in self._matches[pair]]))
+
+    def _would_agree(self, a: int, b: int, pairs: list[tuple[int, int]]) -> bool:
+        """Whether all pairs would agree if the pictures of two cameras were exchanged; keypoints keep their undistortion."""
+        other = {a: b, b: a}
+        for pair in pairs:
+            fundamental = self._fundamental(other.get(pair[0], pair[0]), other.get(pair[1], pair[1]))
+            distances = [epipolar_distance(fundamental, match.first_px, match.second_px) for match in self._matches[pair]]
+            if np.median(distances) >= TOLERANCE:
+                return False
+        return True
+
+    def _fundamental(self, first: int, second: int) -> Float:
+        """(3, 3) of two cameras: joints x of the first lie on the line F x of the second (Hartley and Zisserman, 9.2.2)."""
+        from_first, to_second = self._views.projections[first], self._views.projections[second]
+        ex, ey, ez = to_second @ np.append(self._views.centres_m[first], 1.0)
+        cross = np.array(((0.0, -ez, ey), (ez, 0.0, -ex), (-ey, ex, 0.0)))
+        fundamental: Float = cross @ to_second @ np.linalg.pinv(from_first)
+        return fundamental
+
+
+def epipolar_distance(fundamental: Float, first_px: Float, second_px: Float) -> float:
+    """Median over joints (n, 2) of the larger distance from an epipolar line, as a share of the body's extent in that picture."""
+    first, second = (np.column_stack((points, np.ones(len(points)))) for points in (first_px, second_px))
+    in_second, in_first = first @ fundamental.T, second @ fundamental
+    product = np.abs(np.sum(second * in_second, axis=1))
+    shares = [
+        product / np.hypot(lines[:, 0], lines[:, 1]) / np.hypot(*np.ptp(points, axis=0))
+        for lines, points in ((in_second, second_px), (in_first, first_px))
+    ]
+    return float(np.median(np.maximum(*shares)))
+
+
+def _groups(cameras: set[int], agreeing: list[tuple[int, int]]) -> list[set[int]]:
+    """Cameras that are joined by pairs that agree."""
+    groups = [{camera} for camera in sorted(cameras)]
+    for a, b in agreeing:
+        joined = [group for group in groups if a in group or b in group]
+        groups = [group for group in groups if group not in joined] + [set().union(*joined)]
+    return groups

@@ -1,0 +1,96 @@
+"""Cameras that are not where the calibration says must be named, and no camera that is."""
+
+from dataclasses import replace
+
+import msgspec
+import numpy as np
+import pytest
+
+from models.camera.rig import Rig
+from models.messages.observation import Observation
+from services.fusion.agreement import Agreement, Disagreement
+from services.fusion.config import SightingConfig
+from tests.synthetic.gym import Gym, ring_rig
+from tests.synthetic.person import Person
+
+pytestmark = pytest.mark.slow
+
+SECONDS = 14.0
+
+
+def calibrated_as(rig: Rig, order: tuple[int, ...]) -> Rig:
+    """The same cameras' names with the calibration of others."""
+    return Rig(tuple(replace(rig.cameras[source], name=name) for name, source in zip(rig.names, order, strict=True)))
+
+
+def told(rig: Rig, gym: Gym) -> Disagreement | None:
+    agreement = Agreement(rig, SightingConfig())
+    for event in gym.events():
+        if isinstance(event, Observation):
+            agreement.observe(event)
+    return agreement.judge()
+
+
+@pytest.mark.parametrize("rate_hz", [5.0, 12.0, 30.0])
+def test_nobody_is_blamed_when_the_calibration_is_right_whatever_the_network_gets_wrong(rate_hz: float) -> None:
+    gym = Gym(seconds=SECONDS, rates_hz=(rate_hz,), bystanders=((Person(centre_m=(1.5, 2.0), phase=0.3), (0, 2)),))
+    assert told(gym.rig, gym) is None
+
+
+@pytest.mark.parametrize(("a", "b"), [(0, 1), (0, 2), (1, 3)])
+def test_two_cameras_that_are_exchanged_are_named_as_exchanged(a: int, b: int) -> None:
+    gym = Gym(seconds=SECONDS)
+    order = list(range(4))
+    order[a], order[b] = b, a
+    found = told(calibrated_as(gym.rig, tuple(order)), gym)
+    assert found is not None
+    # In a ring, exchanging opposite cameras looks like exchanging the other two, turned by half a circle.
+    assert (f"cam{a}", f"cam{b}") in found.exchanged
+    assert len(found.exchanged) <= 2
+    assert f"cam{a} and cam{b}" in str(found)
+
+
+def test_a_camera_that_was_turned_is_named_alone() -> None:
+    gym = Gym(seconds=SECONDS)
+    knocked = gym.rig.cameras[2]
+    turn = np.array(((np.cos(0.12), 0.0, np.sin(0.12)), (0.0, 1.0, 0.0), (-np.sin(0.12), 0.0, np.cos(0.12))))
+    tilt = np.array(((1.0, 0.0, 0.0), (0.0, np.cos(0.12), -np.sin(0.12)), (0.0, np.sin(0.12), np.cos(0.12))))
+    rotation = tilt @ turn @ knocked.rotation
+    moved = replace(knocked, rotation=rotation, translation_m=-rotation @ knocked.centre_m)
+    found = told(Rig(tuple(moved if camera is knocked else camera for camera in gym.rig)), gym)
+    assert found is not None
+    assert found.strangers == ("cam2",)
+    assert found.exchanged == ()
+    assert "cam2 does not agree with the calibration" in str(found)
+
+
+def test_two_cameras_can_only_be_told_to_contradict_one_another() -> None:
+    gym = Gym(rig=ring_rig(5), seconds=SECONDS)
+    pair = Rig(gym.rig.cameras[:2])
+    wrong = Rig((pair.cameras[0], replace(gym.rig.cameras[3], name="cam1")))
+    found = told(wrong, replace(gym, rig=pair))
+    assert found is not None
+    assert found.contradictory
+    assert found.exchanged == ()
+    assert "cam0, cam1 do not agree with one another" in str(found)
+
+
+def test_nobody_is_blamed_before_there_is_enough_to_tell() -> None:
+    gym = Gym(seconds=3.0)
+    assert told(calibrated_as(gym.rig, (1, 0, 2, 3)), gym) is None
+    empty = Agreement(gym.rig, SightingConfig())
+    assert empty.judge() is None
+
+
+def test_a_camera_that_is_put_right_is_no_longer_named() -> None:
+    gym = Gym(seconds=SECONDS)
+    agreement = Agreement(gym.rig, SightingConfig())
+    pictures = [event for event in gym.events() if isinstance(event, Observation)]
+    renamed = {"cam0": "cam1", "cam1": "cam0", "cam2": "cam2", "cam3": "cam3"}
+    for picture in pictures:
+        agreement.observe(msgspec.structs.replace(picture, camera=renamed[picture.camera]))
+    assert agreement.judge() is not None
+    later_ns = round(SECONDS * 1e9)
+    for picture in pictures:
+        agreement.observe(msgspec.structs.replace(picture, t_mid_ns=picture.t_mid_ns + later_ns))
+    assert agreement.judge() is None
