@@ -99,6 +99,18 @@ def median_distance(
     return distance
 
 
+@compiled
+def agreement(points: Float, sigma: Float, usable: Bool, expected: Float, variance: Float, known: Bool, gate: float) -> float:
+    """Share of a person's keypoints within `gate` squared sigmas of where they are expected; 1 if none can be compared."""
+    count, agreeing = 0, 0
+    for j in range(points.shape[0]):
+        if usable[j] and known[j]:
+            distance2 = (points[j, 0] - expected[j, 0]) ** 2 + (points[j, 1] - expected[j, 1]) ** 2
+            count += 1
+            agreeing += distance2 <= gate * (sigma[j] ** 2 + variance[j])
+    return agreeing / count if count else 1.0
+
+
 class PersonSearch:
     """Finds the persons in space that the candidates of all cameras at one instant can be."""
 

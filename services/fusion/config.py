@@ -77,6 +77,8 @@ class AssociationConfig:
 
     Attributes:
         person_gate_m: largest median distance, across the line of sight, of a person's keypoints from the expected ones.
+        min_agreement: share of a person's keypoints that must be where they are expected if two other cameras see the pupil; a
+            network that looks at two people at once mixes them, and what is right of that is not worth what is wrong.
         slack: calibration error, as a share of the body's size in the picture, that the choice of the pupil forgives.
         misses_to_search: consecutive observations without the pupil after which a camera is asked to search.
         patience_s: how long a choice with fewer views than cameras is waited with.
@@ -87,6 +89,7 @@ class AssociationConfig:
     """
 
     person_gate_m: float = 0.20
+    min_agreement: float = 0.6
     slack: float = 0.02
     misses_to_search: int = 3
     patience_s: float = 0.25

@@ -4,7 +4,7 @@ import numpy as np
 
 from models.arrays import Bool, Float, UInt32
 from models.skeleton import coco
-from services.fusion.association import Familiar, pick_pupil
+from services.fusion.association import Familiar, agreement, pick_pupil
 from services.fusion.body_filter import BodyFilter, centre_in_picture
 from services.fusion.compiled import Counts
 from services.fusion.config import FusionConfig
@@ -84,9 +84,12 @@ class Pupil:
         if found is None:
             self.misses[camera] += 1
             return
+        sighting, swapped = repair(found, expected)
+        if self._outvoted(camera, sighting, expected, config):
+            self.misses[camera] += 1
+            return
         self.misses[camera] = 0
         self._identities[camera] = found.track
-        sighting, swapped = repair(found, expected)
         repaired = sighting is not found
         if not self._tracks.add(camera, sighting):
             return
@@ -98,6 +101,15 @@ class Pupil:
             self._doubt_sides(camera, t_s, swapped)
         self._repaired[camera] = repaired
         self._see_body(t_s, projection, sighting, expected)
+
+    def _outvoted(self, camera: int, sighting: Sighting, expected: Expectation, config: FusionConfig) -> bool:
+        """Whether two other cameras see the pupil where this one sees, for the most part, somebody else."""
+        seen = sighting.points_px, sighting.sigma_px, sighting.usable
+        gate = config.filter.hard_gate
+        if agreement(*seen, expected.points_px, expected.variance_px2, expected.known, gate) >= config.association.min_agreement:
+            return False
+        recent_s = sighting.t_s - config.filter.view_memory_s
+        return sum(self._tracks.newest_s(other) >= recent_s for other in range(len(self._views)) if other != camera) >= 2
 
     def _see_body(self, t_s: float, projection: Float, sighting: Sighting, expected: Expectation) -> None:
         """Measure the body's centre."""

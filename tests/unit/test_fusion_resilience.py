@@ -86,6 +86,27 @@ def test_a_bystander_who_is_listed_first_is_not_chosen() -> None:
     assert np.nanmean(errors_mm(after(play(gym.rig, events).smooth, 0.5), gym.truth)) < 40.0
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_view_in_which_the_network_mixes_two_people_is_not_fused(seed: int) -> None:
+    """Somebody stands before the pupil in one view: most keypoints there are on the wrong one, a few on the right."""
+    gym = replace(GYM, rates_hz=(15.0,), seed=seed).quiet()
+    camera, name = 2, gym.rig.names[2]
+    aside = 0.19 * gym.rig.cameras[camera].rotation[0]
+    mixed = [joint for joint in range(coco.COUNT) if joint not in (13, 14, 15, 16)]
+
+    def mix(event: Observation) -> Observation:
+        if event.camera != name or (event.t_mid_ns - T0_NS) * 1e-9 < 2.0:
+            return event
+        points = event.persons[0].keypoints_px.copy()
+        points[mixed] = gym.rig.cameras[camera].project(gym.truth(event.t_mid_ns) + aside)[mixed]
+        return msgspec.structs.replace(event, persons=(msgspec.structs.replace(event.persons[0], keypoints_px=points),))
+
+    played = play(gym.rig, [event if isinstance(event, Tick) else mix(event) for event in gym.events()])
+    late = after(played.smooth, 2.5)
+    assert np.mean([motion.cameras[camera].used for motion in late]) < 0.25
+    assert np.nanmean(errors_mm(late, gym.truth)) < 35.0
+
+
 def test_a_camera_whose_crop_drifted_to_a_neighbour_is_not_fused_and_is_asked_to_search() -> None:
     neighbour = Person(centre_m=(0.0, 2.2), radius_m=0.1, throws=False)
     gym = replace(GYM, bystanders=((neighbour, (2,)),))
