@@ -9,6 +9,7 @@ import structlog
 
 from models.errors import UserError
 from services.lesson.layout import PART_SUFFIX, SUFFIX
+from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_reader import open_lesson, read_header
 
 NAME = "index.sqlite"
@@ -89,6 +90,29 @@ class LessonIndex:
             if connection is not self._memory:
                 connection.close()
         return sorted(found.values(), key=lambda row: (row.started_s, row.lesson), reverse=True)
+
+    def note(self, writer: LessonWriter, path: Path) -> None:
+        """A lesson was finished: list it without reading its file."""
+        status = path.stat()
+        header = writer.header
+        row = LessonRow(
+            lesson=name_of(path),
+            title=header.title,
+            started_s=header.started_s,
+            seconds=writer.recorded_s,
+            bytes=status.st_size,
+            gaps=writer.gaps,
+            segments=writer.segments,
+            state="finished",
+            problem="",
+            changed_ns=status.st_mtime_ns,
+        )
+        connection = self._connect()
+        try:
+            self._write(connection, [], [astuple(row)])
+        finally:
+            if connection is not self._memory:
+                connection.close()
 
     def _write(self, connection: sqlite3.Connection, gone: list[tuple[str]], new: list[tuple[object, ...]]) -> None:
         try:

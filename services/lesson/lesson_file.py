@@ -54,6 +54,8 @@ class Contents:
         sequence: number of the next message.
         log_time_ns: of the latest message; log times never go back.
         gaps: parts before which something is missing.
+        segments: stretches that replay in one go.
+        segment_ns: the name of the last one; 0 before the first.
     """
 
     end: int = 0
@@ -64,8 +66,10 @@ class Contents:
     sequence: int = 0
     log_time_ns: int = 0
     gaps: int = 0
+    segments: int = 0
+    segment_ns: int = 0
 
-    def take_chunk(self, start: int, length: int, chunk: Chunk, messages: Sequence[Message]) -> None:
+    def take_chunk(self, start: int, length: int, chunk: Chunk, messages: Sequence[Message], mark: Mark) -> None:
         """Note a chunk that lies at byte `start`."""
         for message in messages:
             self.counts[message.channel_id] = self.counts.get(message.channel_id, 0) + 1
@@ -84,6 +88,9 @@ class Contents:
         )
         self.sequence += len(messages)
         self.log_time_ns = messages[-1].log_time
+        self.gaps += bool(mark.gap)
+        self.segments += mark.segment_ns != self.segment_ns
+        self.segment_ns = mark.segment_ns
 
 
 class LessonWriter:
@@ -138,6 +145,11 @@ class LessonWriter:
         return self._contents.gaps
 
     @property
+    def segments(self) -> int:
+        """Stretches that replay in one go."""
+        return self._contents.segments
+
+    @property
     def size(self) -> int:
         """Bytes that are safe on the disk."""
         return self._contents.end
@@ -163,8 +175,7 @@ class LessonWriter:
         body = encode(chunk)
         start = contents.end
         self._write(body)
-        contents.take_chunk(start, len(body), chunk, messages)
-        contents.gaps += bool(gap)
+        contents.take_chunk(start, len(body), chunk, messages, mark)
 
     def finish(self) -> Path:
         """Write the summary, close the file and give it its final name.

@@ -17,6 +17,7 @@ from models.config.site import LessonsConfig
 from models.messages.health import RecorderHealth
 from models.messages.lesson import FusionLog, SegmentRequest
 from services.lesson.following import Following
+from services.lesson.index import LessonIndex
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_header import LessonHeader
 from services.support.machine import free_disk_mb
@@ -163,7 +164,7 @@ class Recorder:
         if why:
             self._trouble(f"lesson {name} ended: {why}")
         try:
-            writer.finish()
+            LessonIndex(self._folder).note(writer, writer.finish())
         except OSError as error:
             writer.close()
             self._trouble(

@@ -14,7 +14,8 @@ from mcap.records import Chunk, MetadataIndex
 
 from models.errors import UserError
 from services.lesson import lesson_header
-from services.lesson.layout import PART_SUFFIX
+from services.lesson.index import LessonIndex
+from services.lesson.layout import PART_SUFFIX, Mark
 from services.lesson.lesson_file import Contents, LessonWriter
 from services.lesson.lesson_reader import PartDecoder, read_header
 from services.lesson.mcap_records import DamageError, messages, parse, walk
@@ -91,8 +92,9 @@ def survey(file: BinaryIO) -> Contents:
             if place.opcode == Opcode.METADATA:
                 contents.metadata = MetadataIndex(place.start, place.end - place.start, lesson_header.NAME)
             if place.opcode == Opcode.CHUNK:
-                contents.gaps += bool(decoder.decode(place).gap)
-                contents.take_chunk(place.start, place.end - place.start, parse(Chunk, place), messages(place))
+                part = decoder.decode(place)
+                mark = Mark(part.segment_ns, part.sequence, part.gap)
+                contents.take_chunk(place.start, place.end - place.start, parse(Chunk, place), messages(place), mark)
             elif contents.chunks or place.opcode not in _BEGINNING:
                 break
             contents.end, contents.checksum = place.end, place.checksum
@@ -103,7 +105,7 @@ def survey(file: BinaryIO) -> Contents:
 
 def _finish(writer: LessonWriter) -> None:
     try:
-        writer.finish()
+        LessonIndex(writer.path.parent).note(writer, writer.finish())
     except OSError as error:
         writer.close()
         log.warning("a recovered lesson could not be finished", lesson=writer.path.name, reason=str(error))

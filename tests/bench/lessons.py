@@ -93,6 +93,9 @@ def _payloads(parts: list[LessonPart], persons: int) -> dict[str, list[bytes]]:
         for entry in part.entries:
             found[entry.kind].append(entry.payload)
     found["observation"] = list(_with_persons(found["observation"], persons))
+    missing = [kind for kind in ("observation", "tick", "motion", "health") if not found[kind]]
+    if missing:
+        raise SystemExit(f"the lesson has no {missing[0]}: did the cameras run? See bench/box.log in the data folder")
     return found
 
 

@@ -2,6 +2,7 @@
 
 import os
 import sqlite3
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from services.lesson import index
 from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX
 from services.lesson.lesson_file import LessonWriter
+from services.lesson.recovery import recover
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
 
 
@@ -31,6 +33,18 @@ def test_a_lesson_is_listed_with_its_figures(tmp_path: Path) -> None:
     assert (row.gaps, row.segments, row.bytes) == (1, 2, file.stat().st_size)
     assert row.seconds == pytest.approx(9.5, abs=0.01)
     assert row.started_s == pytest.approx(1_700_000_005.0)
+
+
+def test_what_the_recorder_notes_is_what_reading_the_file_would_give(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    record(tmp_path, "a")
+    (read,) = LessonIndex(tmp_path).lessons()
+    (tmp_path / index.NAME).unlink()
+    (tmp_path / "a.mcap").rename(tmp_path / f"a{PART_SUFFIX}")
+    assert recover(tmp_path, run_ns=0) is None
+    monkeypatch.setattr(index, "open_lesson", None)
+    (noted,) = LessonIndex(tmp_path).lessons()
+    assert noted.seconds == pytest.approx(read.seconds, abs=1e-3)
+    assert noted == replace(read, changed_ns=noted.changed_ns, seconds=noted.seconds)
 
 
 def test_files_that_come_go_and_change_are_followed(tmp_path: Path) -> None:
