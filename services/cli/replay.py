@@ -13,6 +13,7 @@ from models.process import Playback
 from services.cli.check_lesson import what_changed
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.lesson_reader import open_lesson
+from services.lesson.replay import configuration
 from services.supervisor.supervise import supervise
 from services.support.listening import listen
 from services.support.site_migration import migrated_text
@@ -39,7 +40,10 @@ def play(file: Path, data: Path, page: TabletConfig, speed: float, *, loop: bool
         header = lesson.header
         for line in what_changed(header):
             typer.echo(f"note: {line}", err=True)
-        lesson.summary()  # Damage is told now, and not when the pupils wait for what follows.
+        # What is wrong is told now, and not when pupils wait for what follows.
+        configuration(header.preset)
+        header.rig()
+        lesson.summary()
     _require_port(page)
     playback = Playback(str(file.resolve()), header.title, header.started_ns + header.wall_minus_monotonic_ns, speed, loop)
     with tempfile.TemporaryDirectory(prefix="kinebox-replay-") as folder:

@@ -12,7 +12,7 @@ from pathlib import Path
 from threading import Event
 
 from models.config.site import Site
-from models.errors import USER_ERROR_CODE
+from models.errors import USER_ERROR_CODE, UserError
 from models.messages.health import SupervisorHealth
 from models.process import EDGE, RECORDER, REPLAY, ROUTER, Check, Playback
 from services.logs.files import STARTED, log_folder
@@ -90,7 +90,11 @@ class Supervisor:
         self._over = False
 
     def run(self, stop: Event) -> None:
-        """Man every post until `stop` is set or what is played is over, then end all."""
+        """Man every post until `stop` is set or what is played is over, then end all.
+
+        Raises:
+            UserError: what is played cannot be played on.
+        """
         try:
             self._journal.say(f"starting {', '.join(post.name for post in self._posts)}")
             for post in self._posts:
@@ -102,6 +106,9 @@ class Supervisor:
                 link.close()
         finally:
             self._end_all()
+        for post in self._posts:
+            if post.given_up and post.spec.entry == REPLAY:
+                raise UserError(post.given_up)
 
     def _watch(self, stop: Event, link: BusLink) -> None:
         before_s = time.monotonic()
@@ -159,6 +166,7 @@ class Supervisor:
         post.ended(code, child.user_error, now_s, self._site.supervisor)
         if post.given_up:
             self._journal.say(f"{post.name} is given up: {post.given_up}", level="error")
+            self._over = self._over or post.spec.entry == REPLAY  # There is nothing else to see.
         else:
             self._journal.say(post.trouble, level="warning")
 

@@ -1,0 +1,155 @@
+"""The replay process on the bus in memory: the lesson's figure, moved to now, and what its cameras said, and nothing else."""
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from models.config.site import SITE_VERSION, CameraConfig, Site
+from models.errors import UserError
+from models.messages import codec, topics
+from models.messages.health import Health
+from models.messages.motion import Motion
+from models.process import Playback, ProcessContext, Resources, Subscription
+from services.bus.memory import MemoryRouter
+from services.fusion.config import PRESETS
+from services.lesson import playback
+from services.lesson.lesson_reader import open_lesson
+from services.lesson.playback import LONGEST_PAUSE_NS, Pace, moved
+from services.lesson.replay import difference, replay
+from tests.integration.waiting import DEADLINE_S, until
+from tests.synthetic.gym import Gym
+from tests.synthetic.gym_lesson import TITLE, write_gym_lesson
+
+S = 1_000_000_000
+GYM = Gym(seconds=3.0, seed=5)
+
+
+def test_an_instant_is_due_when_the_speed_says() -> None:
+    pace = Pace(speed=2.0, from_ns=100 * S, at_ns=7 * S)
+    assert pace.due_ns(100 * S, 7 * S) == 7 * S
+    assert pace.due_ns(104 * S, 8 * S) == 9 * S
+
+
+def test_a_long_pause_of_the_lesson_is_cut_short_and_the_pace_goes_on_from_there() -> None:
+    pace = Pace(speed=1.0, from_ns=0, at_ns=50 * S)
+    assert pace.due_ns(600 * S, 51 * S) == 51 * S + LONGEST_PAUSE_NS
+    assert pace.due_ns(601 * S, 54 * S) == 55 * S
+
+
+def test_who_is_late_does_not_hurry_after_the_lesson() -> None:
+    pace = Pace(speed=1.0, from_ns=0, at_ns=50 * S)
+    first = pace.due_ns(1 * S, 80 * S)
+    assert first <= 80 * S
+    assert pace.due_ns(2 * S, 80 * S) == first + S
+
+
+@pytest.fixture(scope="module")
+def lesson(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_gym_lesson(tmp_path_factory.mktemp("lesson"), GYM)
+
+
+class Played:
+    """Everything that a replay publishes."""
+
+    def __init__(self, router: MemoryRouter) -> None:
+        self._bus = router.open()
+        self._motions: Subscription = self._bus.subscribe(topics.motion("live"), topics.motion("smooth"), keep=10_000)
+        self._healths: Subscription = self._bus.subscribe(topics.ALL_HEALTH, keep=10_000)
+        self.live: list[Motion] = []
+        self.smooth: list[Motion] = []
+        self.healths: list[Health] = []
+
+    def collect(self) -> "Played":
+        while (delivery := self._motions.receive(0.0)) is not None:
+            motion = codec.decode(delivery.payload, Motion)
+            (self.live if motion.kind == "live" else self.smooth).append(motion)
+        while (delivery := self._healths.receive(0.0)) is not None:
+            self.healths.append(codec.decode(delivery.payload, Health))
+        return self
+
+
+@contextmanager
+def playing(file: Path, *, loop: bool, speed: float = 8.0) -> Iterator[tuple[Played, threading.Thread]]:
+    router, stop = MemoryRouter(), threading.Event()
+    cameras = [CameraConfig(name=name, kind="video", path="none.avi") for name in GYM.rig.names]
+    context = ProcessContext(
+        name="replay",
+        camera=None,
+        site=Site(version=SITE_VERSION, name="test", calibration="rig.toml", cameras=cameras),
+        rig=GYM.rig,
+        data=file.parent,
+        start_ns=time.monotonic_ns(),
+        bus=router.open(),
+        stop=stop,
+        resources=lambda: Resources(0.1, 100.0),
+        playback=Playback(str(file), TITLE, 0, speed, loop),
+    )
+    played = Played(router)
+    thread = threading.Thread(target=playback.main, args=(context,), daemon=True)
+    thread.start()
+    try:
+        yield played, thread
+    finally:
+        stop.set()
+        thread.join(DEADLINE_S)
+        assert not thread.is_alive(), "the replay did not honour stop"
+
+
+@pytest.mark.slow
+def test_the_figure_of_the_lesson_is_published_with_its_times_moved_and_nothing_else_changed(lesson: Path) -> None:
+    before_ns = time.monotonic_ns()
+    with playing(lesson, loop=False) as (played, thread):
+        thread.join(DEADLINE_S)
+        assert not thread.is_alive(), "a lesson that is played once comes to its end"
+        played.collect()
+    with open_lesson(lesson) as opened:
+        recorded = [m for item in replay(opened.parts(), GYM.rig, PRESETS["default"]) for m in item.motions]
+    for kind, published in (("live", played.live), ("smooth", played.smooth)):
+        expected = [motion for motion in recorded if motion.kind == kind]
+        assert len(published) == len(expected) > 60
+        for motion, original in zip(published, expected, strict=True):
+            assert motion.t_ns - motion.t_newest_ns == original.t_ns - original.t_newest_ns
+            assert difference(moved(original, motion.t_ns - original.t_ns, 0), motion) == ""
+            assert motion.t_ns > before_ns - S, "shown as of now, not as of the lesson's day"
+            assert motion.t_published_ns >= motion.t_newest_ns
+
+
+@pytest.mark.slow
+def test_cameras_and_fusion_say_again_what_they_said_and_others_of_that_day_do_not(lesson: Path) -> None:
+    with playing(lesson, loop=True, speed=1.0) as (played, _):
+        names = {"replay", "fusion", *(f"edge-{name}" for name in GYM.rig.names)}
+        until(lambda: {health.process for health in played.collect().healths} >= names, "everybody's word")
+        until(lambda: any(h.replay is not None and h.replay.position_s > 0 for h in played.collect().healths), "a position")
+    assert {health.process for health in played.healths} == names
+    told = [health.replay for health in played.healths if health.replay is not None]
+    assert all(0 <= replay.position_s <= replay.length_s + 0.1 for replay in told)
+    assert all(replay.length_s == pytest.approx(3.0, abs=0.2) for replay in told)
+
+
+@pytest.mark.slow
+def test_a_loop_begins_again_with_the_same_figure(lesson: Path) -> None:
+    with playing(lesson, loop=True) as (played, _):
+        until(lambda: sum(motion.sequence == 5 for motion in played.collect().smooth) >= 2, "the lesson's second time")
+    first, second = [motion for motion in played.smooth if motion.sequence == 5][:2]
+    assert second.t_ns > first.t_ns
+    assert difference(moved(first, second.t_ns - first.t_ns, 0), second) == ""
+
+
+def test_without_a_lesson_the_process_says_how_it_is_started(tmp_path: Path) -> None:
+    context = ProcessContext(
+        name="replay",
+        camera=None,
+        site=Site(version=SITE_VERSION, name="t", calibration="r", cameras=[]),
+        rig=GYM.rig,
+        data=tmp_path,
+        start_ns=0,
+        bus=MemoryRouter().open(),
+        stop=threading.Event(),
+        resources=lambda: Resources(0.0, 0.0),
+    )
+    with pytest.raises(UserError, match="start it with 'kinebox replay LESSON'"):
+        playback.main(context)
