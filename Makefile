@@ -15,7 +15,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks footage web kernels lock clean distclean bench-start bench-box bench-footage bench-lessons
+.PHONY: help run test check setup networks footage web kernels lock clean distclean bench-start bench-box bench-footage bench-peers bench-lessons
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
@@ -93,6 +93,9 @@ build/peers/%/.ready: tests/bench/peers/%/requirements.lock | $(VENV)/.ready
 
 bench-footage: setup build/peers/pose2sim/.ready ## Accuracy on the built-in footage, beside Pose2Sim on the same keypoints
 	$(PYTHON) -m tests.bench.footage --data $(DATA)
+
+bench-peers: setup build/peers/pose2sim/.ready build/peers/aniposelib/.ready ## Pose2Sim and aniposelib beside our fusion, on the same keypoints
+	$(PYTHON) -m tests.bench.peers --data $(DATA)
 
 lock: ## Compile requirements.lock anew after a change of pyproject.toml
 	$(PYTHON) -m venv build/lock && build/lock/bin/pip install --quiet uv
