@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from services.logs.reader import Line, LogReader
 from services.logs.record import LEVELS, LogRecord
 
-NOON = dt.datetime(2026, 11, 22, 12, 0, 0, tzinfo=dt.UTC)
+NOON = dt.datetime(2025, 11, 22, 12, 0, 0, tzinfo=dt.UTC)
 # All that a program may hold in a text, halves of surrogate pairs included.
 TEXTS = st.text(st.characters(), max_size=20)
 NAMES = st.text(string.ascii_lowercase + "_", min_size=1, max_size=6)

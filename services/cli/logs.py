@@ -6,9 +6,8 @@ import re
 import sys
 import time
 import tomllib
-from collections import deque
 from collections.abc import Iterable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import tomlkit
@@ -17,9 +16,10 @@ from models.errors import UserError
 from services.cli.duration import parse_duration
 from services.logs.export import export
 from services.logs.files import STARTED, log_folder, log_numbers
+from services.logs.past import last_lines, wanted_lines
 from services.logs.query import Query
 from services.logs.readable import as_json, readable
-from services.logs.reader import Line, LogReader
+from services.logs.reader import Line
 from services.logs.record import LEVELS, time_text
 from services.logs.redaction import redacted
 from services.support.site_files import read_file
@@ -30,14 +30,14 @@ _AGO = re.compile(r"[\dhms]*[hms]")
 
 def show(data: Path, query: Query, most: int, *, json: bool, follow: bool) -> None:
     """Print the last `most` lines that are wanted; then, if asked to, every further one as it is written, until Ctrl-C."""
-    reader = LogReader(log_folder(data))
     if not follow:
         _require_log(data)
-    _print(deque(query.select(_unread(reader, torn=not follow)), maxlen=most), json=json)
-    with suppress(KeyboardInterrupt):
+    with suppress(KeyboardInterrupt), _readable_log():
+        lines, reader = last_lines(log_folder(data), query, most, torn=not follow)
+        _print(lines, json=json)
         while follow:
             time.sleep(_LOOK_AGAIN_S)
-            _print(query.select(_unread(reader, torn=False)), json=json)
+            _print(query.select(reader.poll()), json=json)
 
 
 def pack(file: Path, data: Path, query: Query, site: Path | None) -> str:
@@ -52,8 +52,9 @@ def pack(file: Path, data: Path, query: Query, site: Path | None) -> str:
     _require_log(data)
     site = site or _site_of_last_start(data)
     toml = None if site is None else _site_without_secrets(site)
-    lines = query.select(_unread(LogReader(log_folder(data)), torn=True))
-    manifest = export(file, lines, toml, _told(query), dt.datetime.now(dt.UTC))
+    with _readable_log():
+        lines = wanted_lines(log_folder(data), query)
+        manifest = export(file, lines, toml, _told(query), dt.datetime.now(dt.UTC))
     included = f"the site file {site}" if site is not None else "no site file (name it with --site)"
     return f"{file} holds {manifest['lines']['count']} lines and {included}; no pictures, keypoints or passwords\n"
 
@@ -86,11 +87,12 @@ def parse_since(text: str, now: dt.datetime) -> dt.datetime:
         ) from error
 
 
-def _unread(reader: LogReader, *, torn: bool) -> Iterator[Line]:
+@contextmanager
+def _readable_log() -> Iterator[None]:
     try:
-        yield from reader.poll()
-        if torn:
-            yield from reader.torn()
+        yield
+    except BrokenPipeError:
+        raise  # Of the one who reads what we print.
     except OSError as error:
         raise UserError(f"the log cannot be read: {error.strerror} ({error.filename})") from error
 
@@ -116,7 +118,7 @@ def _print(lines: Iterable[Line], *, json: bool) -> None:
 def _site_of_last_start(data: Path) -> Path | None:
     sites = [
         str(line.record.fields.get("site", ""))
-        for line in _unread(LogReader(log_folder(data)), torn=False)
+        for line in wanted_lines(log_folder(data), Query(processes=("supervisor",), text=STARTED))
         if line.record is not None and line.record.event == STARTED
     ]
     file = Path(sites[-1]) if sites and sites[-1] else None

@@ -22,7 +22,7 @@ from models.config.site import SITE_VERSION
 from models.errors import UserError
 from services.logs.readable import as_json
 from services.logs.reader import Line
-from services.logs.record import encode, record_of, time_text
+from services.logs.record import encode, time_text
 from services.logs.redaction import redacted, redacted_text
 
 FORMAT_VERSION = 1
@@ -92,8 +92,10 @@ def _without_secrets(line: Line) -> str:
     record = line.record
     if record is None:
         return as_json(line._replace(raw=redacted_text(line.raw.decode(errors="backslashreplace")).encode()))
-    said = {"event": redacted_text(record.event), "exception": redacted_text(record.exception), **redacted(record.fields)}
-    return encode(record_of(said | {"level": record.level}, record.process, record.time)).decode().rstrip("\n")
+    told = msgspec.structs.replace(
+        record, event=redacted_text(record.event), fields=redacted(record.fields), exception=redacted_text(record.exception)
+    )
+    return encode(told).decode().rstrip("\n")
 
 
 class _Counts:

@@ -32,10 +32,17 @@ class LogReader:
 
     A part of a line is not read before the whole is there. A damaged line is handed on as such. Files that were deleted before they
     could be read are told as a damaged line.
+
+    Args:
+        folder: the log's.
+        first: number of the file to begin with, or the next that there is.
+        last: number of the file to end with; endless if it is None.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, first: int = 0, last: int | None = None) -> None:
         self._folder = folder
+        self._first = first
+        self._last = last
         self._file: int | None = None
         self._number = 0
         self._offset = 0
@@ -65,7 +72,7 @@ class LogReader:
 
     def _open_next(self) -> Generator[Line, None, bool]:
         before = self._number
-        while newer := [number for number in log_numbers(self._folder) if number > before]:
+        while newer := [number for number in log_numbers(self._folder) if number > before and self._is_wanted(number)]:
             try:
                 self._file = os.open(log_path(self._folder, newer[0]), os.O_RDONLY | os.O_CLOEXEC)
             except FileNotFoundError:
@@ -78,14 +85,17 @@ class LogReader:
 
     def _whole_lines(self) -> Iterator[Line]:
         assert self._file is not None  # noqa: S101 - callers have opened one
-        position, rest = self._offset, b""
+        name, position, rest = self._name(), self._offset, b""
         while chunk := os.pread(self._file, _CHUNK_BYTES, position):
             position += len(chunk)
             *whole, rest = (rest + chunk).split(b"\n")
             for raw in whole:
                 self._offset += len(raw) + 1
                 self._lines += 1
-                yield Line(self._name(), self._lines, raw, decode(raw))
+                yield Line(name, self._lines, raw, decode(raw))
+
+    def _is_wanted(self, number: int) -> bool:
+        return number >= self._first and (self._last is None or number <= self._last)
 
     def _is_left_behind(self) -> bool:
         return any(number > self._number for number in log_numbers(self._folder))

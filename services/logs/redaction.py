@@ -19,7 +19,7 @@ LONGEST_WORD = 256
 _SECRET = "[secret]"  # noqa: S105 - what stands in for one
 _KEYS = "|".join(SECRET_KEYS)
 _SECRET_KEY = re.compile(rf"(?:^|[_.-])(?:{_KEYS})s?(?:$|[_.-])", re.IGNORECASE)
-_IN_ADDRESS = re.compile(r"(?<=://)[^\s'\"]*@")
+_IN_ADDRESS = re.compile(r"(?<=://)[^\s'\"]{0,300}@")
 _IN_TEXT = re.compile(rf"((?<![A-Za-z0-9])(?:{_KEYS})s?['\"]?\s*[=:]\s*)(\"[^\"]*\"|'[^']*'|[^\s,;&'\"]+)", re.IGNORECASE)
 # Possessive, so that no text takes longer than its length.
 _NUMBER = r"[-+]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][-+]?\d++)?"

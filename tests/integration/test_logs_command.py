@@ -79,7 +79,6 @@ def test_people_see_aligned_lines_in_their_own_time(data: Path) -> None:
     ],
 )
 def test_lines_are_chosen_by_options(data: Path, words: tuple[str, ...], events: list[str]) -> None:
-    # What is counted was logged on a day that is not over everywhere.
     said = [json.loads(line) for line in kinebox_logs(data, "--json", *words).stdout.splitlines()]
     assert [each["event"] for each in said if each["event"] != "counted"] == events
 

@@ -10,6 +10,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from services.logs.past import last_lines
 from services.logs.query import Query
 from services.logs.readable import as_json, readable
 from services.logs.reader import Line, LogReader
@@ -103,8 +104,8 @@ def is_wanted(said: dict[str, Any], query: Query) -> bool:
     )
 
 
-@given(st.lists(RECORDS, max_size=30), queries())
-def test_a_filter_over_several_files_finds_what_a_naive_one_finds(records: list[LogRecord], query: Query) -> None:
+@given(st.lists(RECORDS, max_size=30), queries(), st.integers(0, 40))
+def test_a_filter_over_several_files_finds_what_a_naive_one_finds(records: list[LogRecord], query: Query, most: int) -> None:
     with tempfile.TemporaryDirectory() as name:
         writer = LogWriter(Path(name), 700, 1000)
         for record in records:
@@ -112,7 +113,12 @@ def test_a_filter_over_several_files_finds_what_a_naive_one_finds(records: list[
         writer.close()
         found = [json.loads(as_json(line)) for line in query.select(LogReader(Path(name)).poll())]
         assert len(list(Path(name).glob("kinebox-*.log"))) >= len(records) // 7
-        assert found == [said for said in raw_lines(Path(name)) if is_wanted(said, query)]
+        wanted = [said for said in raw_lines(Path(name)) if is_wanted(said, query)]
+        assert found == wanted
+        last, reader = last_lines(Path(name), query, most, torn=True)
+        assert [json.loads(as_json(line)) for line in last] == (wanted[-most:] if most else [])
+        assert list(reader.poll()) == []
+        reader.close()
 
 
 @given(st.lists(RECORDS.map(encode).map(bytes.rstrip) | DAMAGED, max_size=12), st.booleans())

@@ -1,5 +1,6 @@
 """Writing the log on discs that fail, and reading it while it is written."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -7,12 +8,14 @@ from pathlib import Path
 import pytest
 
 from services.logs.files import log_numbers, log_path
+from services.logs.past import last_lines, wanted_lines
+from services.logs.query import Query
 from services.logs.reader import LogReader
 from services.logs.record import encode
 from services.logs.writer import LogWriter
 from tests.installed import ROOT
 from tests.integration.waiting import until
-from tests.log_lines import numbered, numbers, raw_lines, whole_log
+from tests.log_lines import NOON, numbered, numbers, raw_lines, whole_log
 
 FULL_DISC = """
 import resource, signal, sys
@@ -119,6 +122,22 @@ def test_a_reader_that_is_overtaken_says_what_it_missed(tmp_path: Path) -> None:
     assert missed == log_numbers(tmp_path)[0] - 2
     assert gap.raw.endswith(b"files were deleted before they could be read")
     assert numbers(lines)[-1] == 99
+
+
+def test_old_files_are_not_read_for_what_is_newer(tmp_path: Path) -> None:
+    writer = LogWriter(tmp_path, 1000, 100)
+    for number in range(50):
+        writer.write(numbered(number))
+    writer.close()
+    *old, newer, newest = log_numbers(tmp_path)
+    # Were one of them read, it would not go unseen.
+    for file in old:
+        log_path(tmp_path, file).write_bytes(b"damaged\n")
+        os.utime(log_path(tmp_path, file), (0, 0))
+    lines, _ = last_lines(tmp_path, Query(since=NOON), 1000, torn=True)
+    assert {line.file for line in lines} == {log_path(tmp_path, number).name for number in (newer, newest)}
+    assert all(line.record is not None for line in wanted_lines(tmp_path, Query(since=NOON)))
+    assert sum(line.record is None for line in wanted_lines(tmp_path, Query())) == len(old)
 
 
 def test_a_part_of_a_line_is_not_read_before_the_whole_is_there(tmp_path: Path) -> None:
