@@ -96,8 +96,8 @@ def _camera_config(context: ProcessContext) -> CameraConfig:
 
 
 @dataclass
-class _Plan:
-    """Fusion's newest wish, or the default while there is none or it is too old."""
+class Plan:
+    """Fusion's newest wish, or the default while there is none or it is too old. `problem` says what could not be read."""
 
     subscription: Subscription
     fallback: ViewControl
@@ -105,6 +105,7 @@ class _Plan:
     problem: str = ""
 
     def at(self, now_ns: int) -> ViewControl:
+        """The plan to obey now."""
         while (delivery := self.subscription.receive(0.0)) is not None:
             try:
                 control = codec.decode(delivery.payload, ViewControl)
@@ -150,7 +151,7 @@ class EdgeLoop:
         position = context.rig.index(self._camera)
         limit_hz = float(context.site.inference.max_rate_hz)
         fallback = default_control(self._camera, position, len(context.rig), context.start_ns, limit_hz)
-        self._plan = _Plan(context.bus.subscribe(topics.control(self._camera), keep=1), fallback)
+        self._plan = Plan(context.bus.subscribe(topics.control(self._camera), keep=1), fallback)
         now_ns = clock.now_ns()
         self._meter = Meter(context.name, os.getpid(), self._camera, t_report_ns=now_ns, t_picture_ns=now_ns)
         self._progress = _Progress()

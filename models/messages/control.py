@@ -4,7 +4,7 @@ from typing import Literal
 
 import msgspec
 
-from models.messages.observation import MAX_PX, Crop
+from models.messages.observation import MAX_PX, Crop, require_count
 
 PoseNetwork = Literal["thunder", "lightning"]
 MAX_RATE_HZ = 1000.0
@@ -57,5 +57,9 @@ class ViewControl(msgspec.Struct, frozen=True):
     prediction: CropPrediction | None
 
     def __post_init__(self) -> None:
+        for field in ("sequence", "t_ns"):
+            require_count(field, getattr(self, field))
+        if not abs(self.offset_ns) < 2**63:
+            raise ValueError(f"offset_ns must be within +-(2^63 - 1), not {self.offset_ns}")
         if not 0 <= self.rate_hz <= MAX_RATE_HZ:
             raise ValueError(f"rate_hz must be within 0 and {MAX_RATE_HZ:g}, not {self.rate_hz}")

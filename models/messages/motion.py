@@ -7,7 +7,7 @@ import msgspec
 import numpy as np
 
 from models.arrays import Float32, UInt8, UInt32
-from models.messages.observation import require_array
+from models.messages.observation import require_array, require_count
 from models.skeleton import coco
 
 
@@ -60,7 +60,11 @@ class Motion(msgspec.Struct, frozen=True, eq=False):
     cameras: tuple[CameraUse, ...]
 
     def __post_init__(self) -> None:
+        for field in ("sequence", "epoch", "t_ns", "t_newest_ns", "t_published_ns"):
+            require_count(field, getattr(self, field))
         require_array("joints_m", self.joints_m, (coco.COUNT, 3))
         require_array("covariance_m2", self.covariance_m2, (coco.COUNT, 3, 3))
         require_array("states", self.states, (coco.COUNT,), np.uint8)
+        if self.states.max() > JointState.SEEN:
+            raise ValueError(f"states must be within 0 and {JointState.SEEN:d}, not {self.states.max()}")
         require_array("views", self.views, (coco.COUNT,), np.uint32)

@@ -108,6 +108,16 @@ class Observation(msgspec.Struct, frozen=True, eq=False):
     network: str
     persons: tuple[Person, ...]
 
+    def __post_init__(self) -> None:
+        for field in ("epoch", "sequence", "frame", "t_mid_ns", "t_published_ns"):
+            require_count(field, getattr(self, field))
+
+
+def require_count(field: str, value: int) -> None:
+    """Raise ValueError unless `value`, a time in nanoseconds or a number that counts, is within 0 and 2^63 - 1."""
+    if not 0 <= value < 2**63:
+        raise ValueError(f"{field} must be within 0 and 2^63 - 1, not {value}")
+
 
 def require_array(field: str, value: object, shape: tuple[int, ...], dtype: type[np.generic] = np.float32) -> None:
     """Raise ValueError unless `value` is a finite numpy array of that shape and dtype."""

@@ -1,9 +1,11 @@
 """The supervisor on the bus. It joins beside its loop, since the router is a process that the loop has yet to start."""
 
+import contextlib
 import threading
 from typing import Literal
 
 from models.messages import codec, topics
+from models.messages.addressed import read_health
 from models.messages.health import Health, MachineHealth, SupervisorHealth
 from models.process import Bus, Subscription
 from services.support.health import HealthReporter, ResourceMeter
@@ -11,6 +13,15 @@ from services.support.heartbeat import beating_pid
 
 NAME = "supervisor"
 _KEEP = 4
+
+
+def unread_healths(subscription: Subscription) -> list[Health]:
+    """What a subscription to health has for us now. Who speaks unintelligibly is silent, and treated as such."""
+    healths: list[Health] = []
+    while (delivery := subscription.receive(0.0)) is not None:
+        with contextlib.suppress(codec.CodecError):
+            healths.append(read_health(delivery.topic, delivery.payload))
+    return healths
 
 
 class BusLink:
@@ -32,13 +43,7 @@ class BusLink:
 
     def heard(self) -> list[Health]:
         """What has come in since the last call."""
-        messages: list[Health] = []
-        while self._subscription is not None and (delivery := self._subscription.receive(0.0)) is not None:
-            try:
-                messages.append(codec.decode(delivery.payload, Health))
-            except codec.CodecError:
-                continue  # Who speaks unintelligibly is silent, and treated as such.
-        return messages
+        return [] if self._subscription is None else unread_healths(self._subscription)
 
     def beats(self) -> list[tuple[str, int]]:
         """The processes, with their ids, whose loops have said since the last call that they go round."""

@@ -13,7 +13,7 @@ import uvicorn
 from models.config.site import TabletConfig
 from models.errors import UserError
 from models.messages import codec, topics
-from models.messages.health import Health
+from models.messages.addressed import read_health
 from models.messages.motion import Motion
 from models.process import Delivery, ProcessContext, Subscription
 from services.support import listening
@@ -137,16 +137,16 @@ def _receive(
     while not context.stop.is_set():
         delivery = subscription.receive(_RECEIVE_TIMEOUT_S)
         if delivery is not None:
-            hand_over(_decoded(delivery, server))
+            hand_over(decoded(delivery, server))
 
 
-def _decoded(delivery: Delivery, server: TabletServer) -> Callable[[], None]:
+def decoded(delivery: Delivery, server: TabletServer) -> Callable[[], None]:
     """What the event loop shall do about a delivery; decoding happens here, in the caller's thread."""
     try:
         if delivery.topic == topics.motion("live"):
             motion = codec.decode(delivery.payload, Motion)
             return lambda: server.receive_motion(motion)
-        health = codec.decode(delivery.payload, Health)
+        health = read_health(delivery.topic, delivery.payload)
         return lambda: server.receive_health(health)
     except codec.CodecError:
         return server.reject_bus_message

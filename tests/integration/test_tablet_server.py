@@ -205,7 +205,7 @@ def test_a_part_that_fails_ends_the_process_with_its_error(
     if part == "show_statuses":
         monkeypatch.setattr(TabletServer, "status", fail)
     elif part == "receive":
-        monkeypatch.setattr(process, "_decoded", fail)
+        monkeypatch.setattr(process, "decoded", fail)
     else:
         monkeypatch.setattr(bus, "publish", fail)
     with pytest.raises(ZeroDivisionError, match=part):

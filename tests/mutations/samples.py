@@ -1,0 +1,93 @@
+"""Valid messages of every topic of a small room, of which mutants are made and which must still be understood afterwards."""
+
+import time
+
+import numpy as np
+
+from models.messages import codec, topics
+from models.messages.control import CropPrediction, ViewControl
+from models.messages.health import CameraHealth, FusionHealth, Health, MachineHealth, RecorderHealth, Restarts, SupervisorHealth
+from models.messages.lesson import Entry, FusionLog, LessonRequest, SegmentRequest
+from models.messages.motion import CameraUse, JointState, Motion
+from models.messages.observation import Crop, Observation, Person
+from models.skeleton import coco
+from tests.synthetic.gym import ring_rig
+from tests.synthetic.person import Person as Pupil
+
+RIG = ring_rig(4)
+JOINTS_M = Pupil().joints(1.0)
+
+
+def observation(index: int, t_ns: int, sequence: int = 0, epoch: int = 0) -> Observation:
+    """The pupil as camera `index` sees him."""
+    camera = RIG.cameras[index]
+    pixels = camera.project(JOINTS_M).astype(np.float32)
+    persons = tuple(
+        Person(
+            track, Crop(640.0, 360.0, 400.0), pixels + 80 * (track - 1), np.full(17, 2, np.float32), np.full(17, 0.9, np.float32)
+        )
+        for track in (1, 2)
+    )
+    return Observation(camera.name, epoch, sequence, sequence, t_ns, t_ns, "thunder", persons)
+
+
+def motion(t_ns: int, sequence: int = 0) -> Motion:
+    """The pupil, seen by all."""
+    return Motion(
+        kind="live",
+        sequence=sequence,
+        epoch=0,
+        t_ns=t_ns,
+        t_newest_ns=t_ns,
+        t_published_ns=t_ns,
+        joints_m=JOINTS_M.astype(np.float32),
+        covariance_m2=np.tile(np.eye(3, dtype=np.float32) * np.float32(1e-4), (coco.COUNT, 1, 1)),
+        states=np.full(coco.COUNT, JointState.SEEN, np.uint8),
+        views=np.full(coco.COUNT, 15, np.uint32),
+        cameras=tuple(CameraUse(name, True, 40.0) for name in RIG.names),
+    )
+
+
+def control(t_ns: int, camera: str = RIG.names[0]) -> ViewControl:
+    """A plan of fusion's."""
+    prediction = CropPrediction(Crop(640.0, 360.0, 400.0), t_ns, 1.0, -1.0)
+    return ViewControl(camera, 5, t_ns, 10.0, 25_000_000, "thunder", False, prediction)
+
+
+def healths(t_ns: int) -> dict[str, Health]:
+    """A word of every process, by its name."""
+    camera = CameraHealth(RIG.names[0], 30.0, 10.0, 10.0, 0, 5.0, "thunder", {"pose": 24.0, "decode": 4.0})
+    machine = MachineHealth(1.2, 2.0, 4000.0, 9000.0, 55.0, 10**18, 0.0)
+    restarts = (Restarts("tablet", 1, t_ns, "hung", ""),)
+    return {
+        f"edge-{RIG.names[0]}": Health(f"edge-{RIG.names[0]}", 1, t_ns, "ok", "", 0.3, 200.0, camera=camera),
+        "fusion": Health("fusion", 2, t_ns, "ok", "", 0.2, 150.0, fusion=FusionHealth(30.0, 1.2, 0.8, 0, {}, "found")),
+        "supervisor": Health(
+            "supervisor", 3, t_ns, "degraded", "x", 0.01, 30.0, machine=machine, supervisor=SupervisorHealth("0.1", t_ns, restarts)
+        ),
+        "recorder": Health("recorder", 4, t_ns, "ok", "", 0.01, 60.0, recorder=RecorderHealth("2026", "a", 3.0, 1.0, 0)),
+    }
+
+
+def log(t_ns: int, sequence: int = 0, segment_ns: int = 1) -> FusionLog:
+    """What fusion took in and gave out."""
+    entries = (
+        Entry("observation", t_ns, codec.encode(observation(0, t_ns))),
+        Entry("tick", t_ns, b""),
+        Entry("motion", t_ns, codec.encode(motion(t_ns))),
+        Entry("health", t_ns, codec.encode(healths(t_ns)["fusion"])),
+    )
+    return FusionLog(segment_ns, sequence, entries)
+
+
+def by_topic() -> dict[str, list[bytes]]:
+    """Valid messages, encoded, by the topic that they belong to, as of now."""
+    t_ns = time.monotonic_ns()
+    found = {topics.observation(name): [codec.encode(observation(i, t_ns))] for i, name in enumerate(RIG.names)}
+    found[topics.motion("live")] = [codec.encode(motion(t_ns))]
+    found[topics.control(RIG.names[0])] = [codec.encode(control(t_ns))]
+    found |= {topics.health(name): [codec.encode(health)] for name, health in healths(t_ns).items()}
+    found[topics.fusion_log()] = [codec.encode(log(t_ns))]
+    found[topics.segment_request()] = [codec.encode(SegmentRequest(t_ns))]
+    found[topics.lesson_request()] = [codec.encode(LessonRequest("start", "a lesson")), codec.encode(LessonRequest("stop"))]
+    return found

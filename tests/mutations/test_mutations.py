@@ -1,0 +1,219 @@
+"""Mutated messages on every topic and on the tablet's socket, through the code that receives them in each process.
+
+No crash, no growth, every refusal counted, and what is valid is understood as before. 100,000 a topic with `make test-mutations`,
+some thousand with `make test`.
+"""
+
+import random
+import threading
+import time
+from collections.abc import Iterator
+from itertools import chain, islice
+from pathlib import Path
+
+import pytest
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import connect
+
+from edge.process import Plan
+from edge.turns import default_control
+from models.messages import codec, topics
+from models.messages.lesson import LessonRequest
+from models.messages.motion import JointState, Motion
+from models.process import Delivery
+from services.bus.mailbox import Mailbox
+from services.fusion.process import FusionLoop
+from services.lesson.process import RecorderLoop, lock
+from services.supervisor.bus_link import unread_healths
+from services.support.cpu import CpuMeter
+from services.support.heartbeat import beating_pid
+from services.tablet.process import decoded
+from services.tablet.room_state import RoomState
+from services.tablet.server import TabletServer
+from tests.browser.room import Room
+from tests.integration.waiting import until
+from tests.mutations.feed import FeedBus, Growth, context_of
+from tests.mutations.mutate import mutants
+from tests.mutations.samples import JOINTS_M, RIG, by_topic, control, healths, log, motion, observation
+
+COUNTS = [
+    pytest.param(2_000, marks=pytest.mark.slow),
+    pytest.param(100_000, marks=[pytest.mark.mutations, pytest.mark.slow, pytest.mark.timeout(1800)]),
+]
+GROWTH_MB = 40.0
+"""Far less than a hundred thousand messages of 3 KB would take if they were kept."""
+
+pytestmark = pytest.mark.timeout(300)
+
+
+def deliveries(topic: str, count: int, growth: Growth, seed: int = 1) -> Iterator[Delivery]:
+    """Mutants on a topic; from a tenth on, memory must not grow any more."""
+    samples = by_topic()[topic]
+    for number, payload in enumerate(mutants(samples, seed, count)):
+        if number == count // 10:
+            growth.settled()
+        yield Delivery(topic, payload)
+
+
+def filmed(seconds: float) -> Iterator[Delivery]:
+    """What four healthy cameras send in so much time, each picture when it is taken."""
+    for sequence in range(round(seconds * 15)):
+        time.sleep(1 / 60)  # the room's own pace
+        for index, name in enumerate(RIG.names):
+            yield Delivery(topics.observation(name), codec.encode(observation(index, time.monotonic_ns(), sequence)))
+
+
+@pytest.mark.parametrize("count", COUNTS)
+@pytest.mark.parametrize(
+    "topic", [topics.observation(RIG.names[0]), topics.health(f"edge-{RIG.names[0]}"), topics.segment_request()]
+)
+def test_fusion_survives_and_then_finds_the_pupil(topic: str, count: int, tmp_path: Path) -> None:
+    stop, growth = threading.Event(), Growth()
+    bus = FeedBus(chain(deliveries(topic, count, growth), filmed(4.0)), stop)
+    FusionLoop(context_of("fusion", bus, stop, tmp_path), CpuMeter()).run()
+    seen = codec.decode(bus.newest[topics.motion("live")], Motion)
+    assert (seen.states == JointState.SEEN).all()
+    assert abs(seen.joints_m - JOINTS_M).max() < 0.1
+    assert sum(health.fusion.rejected for health in bus.healths if health.fusion is not None) > 0
+    assert growth.mb < GROWTH_MB
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_a_cameras_plan_survives_and_the_next_true_one_is_obeyed(count: int) -> None:
+    camera, growth, mailbox = RIG.names[0], Growth(), Mailbox(1)
+    plan = Plan(mailbox, default_control(camera, 0, 4, 0, 30.0))
+    topic, problems = topics.control(camera), set[str]()
+    for delivery in deliveries(topic, count, growth):
+        mailbox.put(topic, delivery.payload)
+        obeyed = plan.at(time.monotonic_ns())
+        assert obeyed.camera == camera
+        assert 0 <= obeyed.rate_hz <= 1000
+        problems.add(plan.problem.partition(":")[0])
+    assert "a plan of fusion's cannot be read" in problems
+    true = control(time.monotonic_ns())
+    mailbox.put(topic, codec.encode(true))
+    assert plan.at(time.monotonic_ns()) == true
+    assert plan.problem == ""
+    assert growth.mb < GROWTH_MB
+
+
+@pytest.mark.parametrize("count", COUNTS)
+@pytest.mark.parametrize("topic", [topics.motion("live"), *(topics.health(name) for name in healths(0))])
+def test_the_pages_server_survives_and_then_shows_what_is_true(topic: str, count: int) -> None:
+    growth = Growth()
+    server = TabletServer(RoomState("test", RIG.names, 30.0, time.monotonic_ns()), time.monotonic_ns)
+    for number, delivery in enumerate(deliveries(topic, count, growth)):
+        decoded(delivery, server)()
+        if number % 50 == 0:
+            server.status().model_dump_json()
+    assert server.status().rejected_bus_messages > count // 10
+    now_ns = time.monotonic_ns()
+    for name, health in healths(now_ns).items():
+        decoded(Delivery(topics.health(name), codec.encode(health)), server)()
+    decoded(Delivery(topics.motion("live"), codec.encode(motion(now_ns))), server)()
+    status = server.status()
+    assert status.pupil == "found"
+    assert {each.name: each.state for each in status.processes}["fusion"] == "ok"
+    assert status.motion_age_ms is not None
+    assert status.motion_age_ms < 60_000
+    assert growth.mb < GROWTH_MB
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_the_tablets_socket_survives_and_then_gets_its_figures(count: int) -> None:
+    texts = (b'..{"type":"ack","motions":1,"statuses":1}', b'..{"type":"ping","id":7}')
+    chance, growth = random.Random(3), Growth()  # noqa: S311 - no secret
+    with Room() as room:
+        url = f"ws://127.0.0.1:{room.port}/ws"
+        pending = _json_mutants(texts, count, chance)
+        sent = 0
+        while sent < count:
+            with connect(url, compression=None) as socket:
+                try:
+                    for message in islice(pending, count - sent):
+                        sent += 1
+                        socket.send(message)
+                        if sent % 500 == 0:
+                            socket.ping().wait(30)  # has the server take what is under way
+                        if sent == count // 10:
+                            growth.settled()
+                except ConnectionClosed:
+                    continue  # the answer to an endless message
+        with connect(url, compression=None) as socket:
+            until(lambda: isinstance(socket.recv(timeout=30), bytes), "a figure")
+            socket.send('{"type":"ping","id":5}')
+            until(lambda: '"pong"' in str(socket.recv(timeout=30)), "an answer")
+        with connect(url, compression=None) as socket:
+            until(lambda: f'"rejected_client_messages":{0}' not in str(socket.recv(timeout=30)), "the refusals in the status")
+    assert growth.mb < GROWTH_MB
+
+
+def _json_mutants(texts: tuple[bytes, ...], count: int, chance: random.Random) -> Iterator[str | bytes]:
+    values = [
+        "-1",
+        "1e999",
+        "NaN",
+        "null",
+        '"x"',
+        "[]",
+        "{}",
+        "9" * 400,
+        "true",
+        '"' + "y" * 3000 + '"',
+        "[" * 2000,
+        '{"a":' * 500,
+        "0.5",
+    ]
+    for _ in range(count):
+        text = chance.choice(texts)[2:]
+        match chance.randrange(5):
+            case 0:
+                at = chance.randrange(len(text))
+                yield bytes(text[:at] + bytes((text[at] ^ (1 << chance.randrange(8)),)) + text[at + 1 :])
+            case 1:
+                yield text[: chance.randrange(len(text))].decode()
+            case 2:
+                yield text.decode().replace(chance.choice(("1", "7", '"ack"', '"motions"')), chance.choice(values))
+            case 3:
+                yield chance.randbytes(chance.choice((0, 1, 100, 4000)))
+            case _:
+                # Now and then one that is longer than any may be, which costs the connection.
+                yield chance.choice(values) if chance.random() < 0.999 else "x" * 5000
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_the_supervisor_survives_and_still_hears(count: int) -> None:
+    growth, mailbox, beats = Growth(), Mailbox(1), 0
+    topic = topics.health("fusion")
+    for delivery in deliveries(topic, count, growth):
+        mailbox.put(topic, delivery.payload)
+        unread_healths(mailbox)
+        beats += beating_pid(delivery.payload) is not None
+    assert beats == 0
+    true = healths(time.monotonic_ns())["fusion"]
+    mailbox.put(topic, codec.encode(true))
+    assert unread_healths(mailbox) == [true]
+    assert growth.mb < GROWTH_MB
+
+
+@pytest.mark.parametrize("count", COUNTS)
+@pytest.mark.parametrize("topic", [topics.fusion_log(), topics.lesson_request()])
+def test_the_recorder_survives_and_then_records(topic: str, count: int, tmp_path: Path) -> None:
+    stop, growth = threading.Event(), Growth()
+
+    def lesson() -> Iterator[Delivery]:
+        yield Delivery(topics.lesson_request(), codec.encode(LessonRequest("stop")))
+        yield Delivery(topics.lesson_request(), codec.encode(LessonRequest("start", "after all that")))
+        begun_ns = time.monotonic_ns()
+        for sequence in range(30):
+            time.sleep(0.05)  # the recorder's seconds are real
+            yield Delivery(topics.fusion_log(), codec.encode(log(time.monotonic_ns(), sequence, begun_ns)))
+
+    bus = FeedBus(chain(deliveries(topic, count, growth), lesson()), stop)
+    with lock(tmp_path / "lessons"):
+        RecorderLoop(context_of("recorder", bus, stop, tmp_path), tmp_path / "lessons").run()
+    recorders = [health.recorder for health in bus.healths if health.recorder is not None]
+    assert recorders[-1].title == "after all that"
+    assert any("could not be read" in health.reason for health in bus.healths)
+    assert bus.published[topics.segment_request()] > 0
+    assert growth.mb < GROWTH_MB
