@@ -15,7 +15,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks footage web kernels lock clean distclean bench-start bench-box bench-footage bench-peers bench-lessons
+.PHONY: help run test check setup networks footage web kernels lock clean distclean test-faults test-mutations bench-faults bench-start bench-box bench-footage bench-peers bench-lessons
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
@@ -75,6 +75,15 @@ $(DATA)/kernels/.ready: $(wildcard services/fusion/*.py) | $(VENV)/.ready
 	@echo "Compiling numerical kernels ..."
 	@$(PYTHON) -c "from services.fusion.warm_up import warm_up; warm_up()"
 	@touch $@
+
+test-faults: setup ## The box killed, stopped and starved: every fault drill once, on the real processes
+	$(PYTHON) -m pytest -m faults tests/faults
+
+test-mutations: setup ## 100,000 mutated messages on each topic and on the tablet's socket
+	$(PYTHON) -m pytest -m mutations tests/mutations
+
+bench-faults: setup ## Recovery and lost recording over 20 runs of each fault drill; some 45 minutes (--drills, --runs in ARGS)
+	$(PYTHON) -m tests.bench.faults --data $(DATA) $(ARGS)
 
 bench-start: setup ## Seconds from the command to the figure in the browser, everything installed
 	$(PYTHON) -m tests.bench.start --site $(SITE) --data $(DATA)
