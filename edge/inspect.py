@@ -41,11 +41,11 @@ def _networks(data: Path) -> Iterator[Inspected]:
         listed = decode_installed((data / FOLDER / FILE_NAME).read_bytes()).networks
     except (OSError, UserError):
         # Every network fails alike; the first says why.
-        yield _inspected("networks", "their list was read", lambda: read_network_file(NETWORKS[0], data))
+        yield _inspected("networks", "reading their list", lambda: read_network_file(NETWORKS[0], data))
         return
     for name in sorted({*NETWORKS, *listed}):
         look = partial(read_network_file, name, data)
-        yield _inspected(f"network {name}", "its hash is compared with the installation's", look)
+        yield _inspected(f"network {name}", "comparing its hash with the installation's", look)
 
 
 def _camera(camera: CameraConfig, rig: Rig | None, data: Path, videos: dict[str, tuple[VideoShape, float]]) -> Inspected:
@@ -62,20 +62,20 @@ def _camera(camera: CameraConfig, rig: Rig | None, data: Path, videos: dict[str,
         if rig is not None and camera.name in rig.names:
             require_calibrated_size(camera.name, shape, rig.cameras[rig.index(camera.name)].size_px)
 
-    return _inspected(f"camera '{camera.name}'", f"{path} was read whole", look)
+    return _inspected(f"camera '{camera.name}'", f"reading {path} whole", look)
 
 
 def _lengths(videos: dict[str, tuple[VideoShape, float]]) -> list[Inspected]:
     if len(videos) < 2:
         return []
-    return [_inspected("length of the videos", "their pictures are counted", lambda: require_equal_lengths(videos))]
+    return [_inspected("length of the videos", "counting their pictures", lambda: require_equal_lengths(videos))]
 
 
 def _provider(site: Site) -> list[Inspected]:
     if site.inference.provider != "openvino" or find_spec("openvino") is not None:
         return []
     fault = 'inference.provider = "openvino", but OpenVINO is not installed; install the extra of that name or set it to "cpu"'
-    return [Inspected("execution provider", "the package was looked for", fault)]
+    return [Inspected("execution provider", "looking for the package", fault)]
 
 
 def _inspected(what: str, known_by: str, look: Callable[[], object]) -> Inspected:

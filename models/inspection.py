@@ -18,7 +18,7 @@ class Inspected:
 
     Attributes:
         what: "network nanodet", "camera 'cam01'".
-        known_by: how it was looked at: "its hash is that of the installation".
+        known_by: how it was looked at: "comparing its hash with the installation's".
         fault: what is wrong and what to do, as in a `UserError`; empty if it is good.
     """
 

@@ -22,7 +22,7 @@ RECENT_NS = 600 * 1_000_000_000
 SLOW_SHARE = 0.8
 """Below this share of the figures wished for, movement is not smooth."""
 SUPERVISOR = "supervisor"
-_LISTENED = "the bus was listened to"
+_LISTENED = "listening to the bus"
 
 
 @dataclass(frozen=True)
@@ -61,6 +61,7 @@ def judge_box(box: BoxFacts) -> Examined:
         *_cameras(box),
         *_own_words(box),
         *_figures(box),
+        *_unreadable(box),
         *_machine(box),
         *_version(box),
     ]
@@ -91,7 +92,7 @@ def _router(box: BoxFacts) -> Iterator[Finding]:
     elif not any(process.stopped for process in here):
         words = f"{ROUTER} (process {here[0].pid}) hangs: the bus does not answer, so no other process can be heard"
         remedy = f"wait some seconds: the box restarts it; if it stays so, end it (kill -9 {here[0].pid})"
-        yield Finding("fault", ROUTER, words, "the bus was asked, and nothing came", remedy)
+        yield Finding("fault", ROUTER, words, "asking the bus, which said nothing", remedy)
 
 
 def _processes(box: BoxFacts) -> Iterator[Finding]:
@@ -120,19 +121,19 @@ def _restarts(box: BoxFacts) -> Iterator[Finding]:
         if each.given_up:
             words = f"{each.process} is given up and does not run any more: {each.given_up}"
             remedy = f"read what it said last (grep '\"{each.process}\"' {box.log}), mend that, and start the box anew"
-            yield Finding("fault", each.process, words, "the supervisor says so", remedy)
+            yield Finding("fault", each.process, words, "the supervisor's word", remedy)
         elif each.count >= OFTEN or ago_s * 1e9 < RECENT_NS:
             times = "once" if each.count == 1 else f"{each.count} times"
             words = f"{each.process} was started again {times}; {_ago(ago_s)} ago it {each.reason}"
             remedy = f"read what it said before (grep '\"{each.process}\"' {box.log}); once is no harm"
-            yield Finding("warning", each.process, words, "the supervisor counts", remedy)
+            yield Finding("warning", each.process, words, "the supervisor's count", remedy)
 
 
 def _page(box: BoxFacts) -> list[Finding]:
     if box.heard.page == "answers":
         return []
     words = f"the page at port {box.site.tablet.port} does not answer"
-    return [Finding("fault", "tablet", words, "it was asked over HTTP", f"wait some seconds; if it stays so, read {box.log}")]
+    return [Finding("fault", "tablet", words, "asking it over HTTP", f"wait some seconds; if it stays so, read {box.log}")]
 
 
 def _cameras(box: BoxFacts) -> Iterator[Finding]:
@@ -170,7 +171,10 @@ def _figures(box: BoxFacts) -> Iterator[Finding]:
     if told.pupil == "found" and told.live_hz < SLOW_SHARE * box.site.fusion.live_hz:
         words = f"only {told.live_hz:.0f} figures a second are made, of {box.site.fusion.live_hz:.0f} that the site file asks for"
         remedy = "end other programs on this machine, or lower inference.cpu_target in the site file"
-        yield Finding("warning", ROUTER, words, "fusion counts", remedy)
+        yield Finding("warning", ROUTER, words, "fusion's count", remedy)
+
+
+def _unreadable(box: BoxFacts) -> Iterator[Finding]:
     for topic, count in box.heard.unreadable.items():
         words = f"{count} messages on {topic} could not be read"
         remedy = "look for a process of another version or a program that writes there; end it"
@@ -193,9 +197,7 @@ def _version(box: BoxFacts) -> Iterator[Finding]:
     if supervisor is None or supervisor.supervisor is None or supervisor.supervisor.version == box.version:
         return
     words = f"the box that runs is KineBox {supervisor.supervisor.version}, but this command is {box.version}"
-    yield Finding(
-        "warning", "version", words, "the supervisor tells its version", "end the box and start it anew with this version"
-    )
+    yield Finding("warning", "version", words, "the supervisor's word", "end the box and start it anew with this version")
 
 
 def _facts(box: BoxFacts) -> tuple[Fact, ...]:

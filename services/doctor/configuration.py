@@ -43,11 +43,20 @@ def judge_configuration(configuration: Configuration) -> Examined:
     """What is wrong with it, and what it is."""
     if configuration.error:
         where = "calibration" if "calibration" in configuration.error.split(":", 1)[0] else "site file"
-        return Examined((fault_of(where, configuration.error, "the file was read as at a start of the box"),))
+        return Examined((fault_of(where, configuration.error, "reading it as a start of the box does"),))
     if configuration.site is None or configuration.rig is None:
         return Examined(facts=(Fact("site", "none was given; name its file with --site to have it examined"),))
     names = ", ".join(configuration.rig.names)
-    return Examined(facts=(Fact("site", f"'{configuration.site.name}', {len(configuration.rig)} calibrated cameras: {names}"),))
+    facts = (Fact("site", f"'{configuration.site.name}', {len(configuration.rig)} calibrated cameras: {names}"),)
+    return Examined(_rehearsal(configuration.site), facts)
+
+
+def _rehearsal(site: Site) -> tuple[Finding, ...]:
+    if not site.faults:
+        return ()
+    sick = ", ".join(sorted({fault.camera for fault in site.faults}))
+    words = f"the site file asks for faults on demand: {sick} will fall ill on purpose"
+    return (Finding("warning", "site file", words, "its tables [[faults]]", "remove them before a lesson"),)
 
 
 def gather_inspected(configuration: Configuration, data: Path, inspections: Iterable[Inspection]) -> list[Inspected]:

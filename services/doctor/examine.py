@@ -1,7 +1,7 @@
 """The whole examination, one part after the other. A part that cannot be examined does not keep the others from it."""
 
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from services.doctor.configuration import (
     judge_inspected,
 )
 from services.doctor.finding import Examined, Fact, Finding
-from services.doctor.installation import PAGE, gather_installation, judge_installation
+from services.doctor.installation import Installation, gather_installation, judge_installation
 from services.doctor.machine import gather_machine, judge_machine
 from services.doctor.ports import gather_ports, judge_ports
 from services.doctor.processes import RunningBox, gather_boxes
@@ -32,14 +32,14 @@ class Order:
         data: the data folder.
         inspections: what the parts look at themselves.
         sensors: what the machine is measured with.
-        page: folder of the built page.
+        installation: looks at what was installed, given the data folder.
     """
 
     site: Path | None
     data: Path
     inspections: Iterable[Inspection] = ()
     sensors: Sensors = field(default_factory=Sensors)
-    page: Path = PAGE
+    installation: Callable[[Path], Installation] = gather_installation
 
 
 def examine(order: Order) -> Examined:
@@ -49,7 +49,7 @@ def examine(order: Order) -> Examined:
 
 def _parts(order: Order) -> Iterator[Examined]:
     yield judge_machine(gather_machine(order.data, order.sensors))
-    yield judge_installation(gather_installation(order.data, order.page))
+    yield judge_installation(order.installation(order.data))
     configuration = gather_configuration(order.site)
     yield judge_configuration(configuration)
     yield judge_inspected(gather_inspected(configuration, order.data, order.inspections))
@@ -78,9 +78,7 @@ def _box(order: Order, site: Site, own: RunningBox) -> Examined:
         from services.supervisor.supervise import posts_of  # noqa: PLC0415
     except ImportError as error:
         remedy = "see what is found of the packages"
-        return Examined(
-            (Finding("fault", "running box", f"it cannot be listened to: {error}", "its bus was to be joined", remedy),)
-        )
+        return Examined((Finding("fault", "running box", f"it cannot be listened to: {error}", "joining its bus", remedy),))
     expected = (*(post.name for post in posts_of(site)), SUPERVISOR)
     heard = listen(site, frozenset(expected))
     log = str(order.data / "logs" / "kinebox.log")

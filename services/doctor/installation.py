@@ -122,7 +122,7 @@ def _judge_packages(installation: Installation) -> list[Finding]:
             findings.append(Finding("fault", where, f"{package.name} is not installed", "the list of installed packages", remedy))
         elif package.problem:
             words = f"{package.name} {package.installed} cannot be imported: {package.problem}"
-            findings.append(Finding("fault", where, words, "it was imported in a process of its own", remedy))
+            findings.append(Finding("fault", where, words, "importing it in a process of its own", remedy))
         elif not package.fits:
             words = f"{package.name} is {package.installed}, but KineBox needs {package.wanted}"
             findings.append(Finding("fault", where, words, "the list of installed packages", remedy))
@@ -142,7 +142,7 @@ def _judge_kernels(installation: Installation) -> list[Finding]:
     folder = installation.kernel_folder
     if installation.kernels is None:
         words = f"the numerical kernels cannot be looked at: {installation.kernels_problem}"
-        return [Finding("fault", "kernels", words, "they were loaded in a process of its own", "run `make kernels`")]
+        return [Finding("fault", "kernels", words, "loading them in a process of its own", "run `make kernels`")]
     if not installation.kernels_lacking:
         return []
     names = ", ".join(installation.kernels_lacking[:3]) + (" ..." if len(installation.kernels_lacking) > 3 else "")

@@ -3,6 +3,7 @@
 import datetime as dt
 import os
 import platform
+import stat
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,12 +19,12 @@ _LEVEL: dict[MachineCode, Level] = {"disk_full": "fault", "memory_low": "fault",
 """The other troubles are warnings."""
 _PLACE: dict[MachineCode, str] = {"disk_full": "disk", "disk_low": "disk", "memory_low": "memory", "clock_set": "clock"}
 _KNOWN_BY: dict[MachineCode, str] = {
-    "disk_full": "the file system of the data folder says so",
-    "disk_low": "the file system of the data folder says so",
+    "disk_full": "the file system of the data folder",
+    "disk_low": "the file system of the data folder",
     "memory_low": "the kernel's and the control group's count of free memory",
     "hot": "the processor's own sensor",
     "throttled": "the processor's counters of throttling",
-    "clock_set": "the wall clock jumped against CLOCK_MONOTONIC",
+    "clock_set": "comparing the wall clock with CLOCK_MONOTONIC",
 }
 EARLIEST = dt.datetime(2026, 11, 1, tzinfo=dt.UTC)
 """No KineBox is older; a clock before this was never set, as on a box without a battery for it."""
@@ -130,7 +131,7 @@ def _clock(machine: MachineFacts) -> Finding | None:
 def _folder(machine: MachineFacts) -> Finding | None:
     if not machine.data_problem:
         return None
-    known_by = "a small file was written there, read back and deleted"
+    known_by = "writing a small file there"
     remedy = "correct --data, or the folder's owner and rights, or mend its disk"
     return Finding("fault", "data folder", f"{machine.data} {machine.data_problem}", known_by, remedy)
 
@@ -138,15 +139,15 @@ def _folder(machine: MachineFacts) -> Finding | None:
 def _try_folder(data: Path) -> str:
     """Why the folder cannot be used; empty if it can."""
     try:
-        if not data.exists():
-            return "does not exist"
-        if not data.is_dir():
+        if not stat.S_ISDIR(data.stat().st_mode):
             return "is no folder"
         list(data.iterdir())
         with tempfile.TemporaryFile(dir=data) as file:
             file.write(b"doctor" * 1000)
             file.flush()
             os.fsync(file.fileno())
+    except FileNotFoundError:
+        return "does not exist"
     except OSError as error:
         return f"cannot be used: {error.strerror}"
     return ""

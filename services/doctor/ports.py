@@ -65,7 +65,7 @@ def gather_ports(site: Site, own: RunningBox | None, boxes: list[RunningBox]) ->
 
 def judge_ports(ports: Ports) -> Examined:
     """What is wrong with them, and who has them."""
-    findings = [fault_of("ports", ports.error, "they were listened on, as at a start of the box")] if ports.error else []
+    findings = [fault_of("ports", ports.error, "listening on them as a start of the box does")] if ports.error else []
     findings += [_taken(port) for port in ports.ports if port.taken and not port.ours]
     words = "; ".join(f"{port.what} {port.number} {_state(port)}" for port in ports.ports)
     return Examined(tuple(findings), (Fact("ports", words),) if words else ())
@@ -81,7 +81,7 @@ def _taken(port: Port) -> Finding:
     else:
         words = f"port {port.number} of the {port.what} is taken by a program of another user"
         remedy = f"find it with `sudo ss -ltnp 'sport = :{port.number}'` and end it, or change {port.key} in the site file"
-    return Finding("fault", f"port of the {port.what}", words, "it was listened on, and its owner looked up", remedy)
+    return Finding("fault", f"port of the {port.what}", words, "listening on it, and looking up its owner", remedy)
 
 
 def _state(port: Port) -> str:

@@ -1,5 +1,6 @@
 """What is wrong with a machine, from what was measured of it. Pure."""
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -75,4 +76,6 @@ def _clock(machine: MachineHealth) -> MachineTrouble:
 
 def size_of(mb: float) -> str:
     """An amount of memory or disk for people."""
+    if math.isnan(mb):
+        return "an unknown amount"
     return f"{mb / 1024:.1f} GB" if mb >= 1024 else f"{mb:.0f} MB"

@@ -20,7 +20,7 @@ NAMES = ("fusion", "edge-a", "edge-b", "tablet", "recorder")
 ENTRY_POINTS = """
 [kinebox.processes]
 fusion = tests.integration.fake_parts:fusion
-edge = tests.integration.fake_parts:edge
+edge = {edge}
 tablet = tests.integration.fake_parts:tablet
 recorder = tests.integration.fake_parts:recorder
 [kinebox.checks]
@@ -50,15 +50,17 @@ def write_site(folder: Path, page_port: int, bus_port: int, more: str = "") -> P
     return site
 
 
-def fake_parts(folder: Path, check: str = "tests.integration.fake_parts:check") -> dict[str, str]:
+def fake_parts(
+    folder: Path, check: str = "tests.integration.fake_parts:check", edge: str = "tests.integration.fake_parts:edge"
+) -> dict[str, str]:
     """An environment in which the parts of the box are the fake ones: an installed package that comes first.
 
-    `check` is what is checked before the start.
+    `check` is what is checked before the start, `edge` the process of a camera.
     """
     package = folder / "packages" / "fake_parts-1.0.dist-info"
     package.mkdir(parents=True, exist_ok=True)
     (package / "METADATA").write_text("Metadata-Version: 2.1\nName: fake-parts\nVersion: 1.0\n")
-    (package / "entry_points.txt").write_text(ENTRY_POINTS.format(check=check))
+    (package / "entry_points.txt").write_text(ENTRY_POINTS.format(check=check, edge=edge))
     return dict(os.environ) | {"PYTHONPATH": f"{package.parent}{os.pathsep}{ROOT}"}
 
 
@@ -69,9 +71,16 @@ class Box:
         folder: an empty folder.
         orders: what the fake parts are told, by process.
         more: further lines of the site file.
+        edge: entry point of the process of a camera.
     """
 
-    def __init__(self, folder: Path, orders: dict[str, str] | None = None, more: str = "") -> None:
+    def __init__(
+        self,
+        folder: Path,
+        orders: dict[str, str] | None = None,
+        more: str = "",
+        edge: str = "tests.integration.fake_parts:edge",
+    ) -> None:
         self.data = folder / "data"
         (self.data / "orders").mkdir(parents=True)
         for name, order in (orders or {}).items():
@@ -83,7 +92,7 @@ class Box:
         with self.errors.open("w") as errors, self.output.open("w") as output:
             self.process = subprocess.Popen(
                 [sys.executable, "-m", "services.cli.main", "run", "--site", str(self.site), "--data", str(self.data)],
-                env=fake_parts(folder),
+                env=fake_parts(folder, edge=edge),
                 stdout=output,
                 stderr=errors,
                 cwd=ROOT,

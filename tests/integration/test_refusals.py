@@ -1,97 +1,26 @@
 """What is wrong with a site is said in one line before anything is started: the real `kinebox run`, the edge's real checks."""
 
-import hashlib
-import json
 import re
 import shutil
 import socket
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
-from edge.check import NETWORKS
 from models.config.site import SITE_VERSION
-from tests.integration.box import CAMERA, ROOT, fake_parts, write_site
-from tests.integration.waiting import free_port
+from tests.integration.box import CAMERA, ROOT, fake_parts
+from tests.integration.house import CALIBRATED_PX, House, build_house, describe, replace_text
 from tests.small_video import write_video
 
 pytestmark = pytest.mark.slow
 
-CALIBRATED_PX = (640, 480)
-"""As in `CAMERA`."""
-
-
-@dataclass(frozen=True)
-class House:
-    """A folder in which everything is right until a test breaks it. The processes that must not start are fake ones."""
-
-    folder: Path
-    page_port: int
-    bus_port: int
-
-    @property
-    def site(self) -> Path:
-        return self.folder / "site.toml"
-
-    @property
-    def rig(self) -> Path:
-        return self.folder / "rig.toml"
-
-    @property
-    def data(self) -> Path:
-        return self.folder / "data"
-
-    @property
-    def videos(self) -> Path:
-        return self.data / "footage"
-
-    @property
-    def networks(self) -> Path:
-        return self.data / "networks"
-
-    def run(self) -> "subprocess.CompletedProcess[str]":
-        command = [sys.executable, "-m", "services.cli.main", "run", "--site", str(self.site), "--data", str(self.data)]
-        environment = fake_parts(self.folder, check="edge.check:check")
-        return subprocess.run(command, env=environment, capture_output=True, text=True, cwd=ROOT, timeout=60, check=False)
-
 
 @pytest.fixture
 def house(tmp_path: Path) -> House:
-    house = House(tmp_path, free_port(), free_port())
-    write_site(tmp_path, house.page_port, house.bus_port)
-    house.videos.mkdir(parents=True)
-    house.networks.mkdir()
-    for name in "ab":
-        write_video(house.videos / f"{name}.avi", frames=3, size_px=CALIBRATED_PX)
-    _describe(house)
-    entries = {}
-    for name in NETWORKS:
-        content = name.encode() * 100
-        (house.networks / f"{name}.onnx").write_bytes(content)
-        entries[name] = {"file": f"{name}.onnx", "sha256": _hash(content), "recipe": "", "sources": {}}
-    (house.networks / "installed.json").write_text(json.dumps({"version": 1, "networks": entries}))
-    return house
-
-
-def _describe(house: House) -> None:
-    """Write the index of the videos as they are now."""
-    files = {path.name: path.read_bytes() for path in sorted(house.videos.glob("*.avi"))}
-    described = {name: {"bytes": len(content), "sha256": _hash(content)} for name, content in files.items()}
-    (house.videos / "installed.json").write_text(json.dumps({"recipe": "test", "files": described}))
-
-
-def _hash(content: bytes) -> str:
-    return hashlib.sha256(content).hexdigest()
-
-
-def _replace(file: Path, old: str, new: str) -> None:
-    text = file.read_text()
-    assert old in text
-    file.write_text(text.replace(old, new, 1))
+    return build_house(tmp_path)
 
 
 def _truncate(file: Path) -> None:
@@ -100,12 +29,12 @@ def _truncate(file: Path) -> None:
 
 def _longer_video(house: House) -> None:
     write_video(house.videos / "b.avi", frames=4, size_px=CALIBRATED_PX)
-    _describe(house)
+    describe(house)
 
 
 def _smaller_video(house: House) -> None:
     write_video(house.videos / "b.avi", frames=3, size_px=(320, 240))
-    _describe(house)
+    describe(house)
 
 
 def _undescribed_smaller_video(house: House) -> None:
@@ -130,24 +59,24 @@ FAULTS: dict[str, tuple[Callable[[House], object], str]] = {
         r"site file .*site\.toml: .*see docs/configuration",
     ),
     "a key is unknown": (
-        lambda house: _replace(house.site, "[tablet]\n", "[tablet]\nspeling = 1\n"),
+        lambda house: replace_text(house.site, "[tablet]\n", "[tablet]\nspeling = 1\n"),
         r"site file .*speling.*tablet.*see docs/configuration",
     ),
     "a value is out of bounds": (
-        lambda house: _replace(house.site, "[tablet]\n", "[inference]\ncpu_target = 7.0\n[tablet]\n"),
+        lambda house: replace_text(house.site, "[tablet]\n", "[inference]\ncpu_target = 7.0\n[tablet]\n"),
         r"site file .*cpu_target.*see docs/configuration",
     ),
     "the site is of a newer version": (
-        lambda house: _replace(house.site, f"version = {SITE_VERSION}", "version = 99"),
+        lambda house: replace_text(house.site, f"version = {SITE_VERSION}", "version = 99"),
         r"site file .*version 99 is for a newer KineBox .*'kinebox version'.*update KineBox, or put back .*site\.toml\.bak-",
     ),
     "the site is of an older version": (
-        lambda house: _replace(house.site, f"version = {SITE_VERSION}", "version = 1"),
+        lambda house: replace_text(house.site, f"version = {SITE_VERSION}", "version = 1"),
         r"site file .*version 1 is from an older KineBox; run 'kinebox config migrate .*site\.toml'",
     ),
     "the calibration is missing": (lambda house: house.rig.unlink(), r"calibration .*rig\.toml does not exist; correct"),
     "the calibration lacks a camera": (
-        lambda house: _replace(house.rig, 'name = "b"', 'name = "z"'),
+        lambda house: replace_text(house.rig, 'name = "b"', 'name = "z"'),
         r"camera 'b' is not in the calibration, which knows a, z; calibrate it or correct",
     ),
     "the calibration names an unknown camera": (
@@ -155,11 +84,11 @@ FAULTS: dict[str, tuple[Callable[[House], object], str]] = {
         r"calibration .*rig\.toml: camera 'z' is not in the site file .*, which has a, b; add it",
     ),
     "a rotation is none": (
-        lambda house: _replace(house.rig, "rotation = [[1.0,", "rotation = [[1.1,"),
+        lambda house: replace_text(house.rig, "rotation = [[1.0,", "rotation = [[1.1,"),
         r"calibration .*rig\.toml: camera 'a': rotation is not a rotation matrix .*calibrate this camera again",
     ),
     "a rotation mirrors": (
-        lambda house: _replace(house.rig, "rotation = [[1.0,", "rotation = [[-1.0,"),
+        lambda house: replace_text(house.rig, "rotation = [[1.0,", "rotation = [[-1.0,"),
         r"calibration .*rig\.toml: camera 'a': rotation is not a rotation matrix .*det -1",
     ),
     "a video is missing": (lambda house: (house.videos / "b.avi").unlink(), r"camera 'b': .*b\.avi is missing; correct"),
@@ -173,7 +102,7 @@ FAULTS: dict[str, tuple[Callable[[House], object], str]] = {
         r"camera 'b': .*b\.avi lasts 0\.133 s \(4 pictures at 30 Hz\), but .* camera 'a', .*a\.avi, 0\.100 s .*; cut the videos",
     ),
     "a video is played at another rate": (
-        lambda house: _replace(house.site, 'path = "footage/b.avi"\n', 'path = "footage/b.avi"\nrate_hz = 25.0\n'),
+        lambda house: replace_text(house.site, 'path = "footage/b.avi"\n', 'path = "footage/b.avi"\nrate_hz = 25.0\n'),
         r"camera 'b': .*b\.avi lasts 0\.120 s \(3 pictures at 25 Hz\), .*0\.100 s .*correct `rate_hz`",
     ),
     "a video has pictures of another size": (
@@ -185,7 +114,7 @@ FAULTS: dict[str, tuple[Callable[[House], object], str]] = {
         r"camera 'b': the pictures of .*b\.avi are 320x240, but the calibration is for 640x480; scale",
     ),
     "a video's path cannot even be looked up": (
-        lambda house: _replace(house.site, "footage/b.avi", f"{'b' * 300}.avi"),
+        lambda house: replace_text(house.site, "footage/b.avi", f"{'b' * 300}.avi"),
         r"camera 'b': .*b\.avi .*can be read \(.*File name too long.*\)",
     ),
     "the list of networks cannot be read": (
@@ -202,11 +131,11 @@ FAULTS: dict[str, tuple[Callable[[House], object], str]] = {
         r"network movenet-lightning: .*movenet-lightning\.onnx is damaged .*delete .* and run `make networks`",
     ),
     "the page's address is none": (
-        lambda house: _replace(house.site, 'host = "127.0.0.1"', 'host = "192.0.2.99"'),
+        lambda house: replace_text(house.site, 'host = "127.0.0.1"', 'host = "192.0.2.99"'),
         r"port of the page: .*192\.0\.2\.99 .*change tablet\.port",
     ),
     "the bus has no port": (
-        lambda house: _replace(house.site, f"tcp/127.0.0.1:{house.bus_port}", "tcp/127.0.0.1:99999"),
+        lambda house: replace_text(house.site, f"tcp/127.0.0.1:{house.bus_port}", "tcp/127.0.0.1:99999"),
         r"port of the bus: 99999 is no port .*change bus\.endpoint",
     ),
 }
