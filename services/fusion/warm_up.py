@@ -10,6 +10,8 @@ from models.skeleton import coco
 from services.fusion.config import PRESETS
 from services.fusion.pipeline import Tick, initial_state, predict_views, step
 
+_BEGIN_NS = 1_000_000_000
+"""A clock that has run for a while, as CLOCK_MONOTONIC has: the first motion is of the time before the first tick."""
 _PERIOD_NS = 33_333_333
 _SIDE_M = {"left": 1.0, "right": -1.0, "nose": 0.0}
 _PLACES_M = {
@@ -34,7 +36,7 @@ def warm_up() -> None:
     state = initial_state(rig)
     sequence = 0
     for tick in range(1, 61):
-        t_ns = tick * _PERIOD_NS
+        t_ns = _BEGIN_NS + tick * _PERIOD_NS
         for camera in rig:
             pixels = camera.project(joints).astype(np.float32)
             crop = Crop(float(pixels[:, 0].mean()), float(pixels[:, 1].mean()), 400.0)
