@@ -8,6 +8,7 @@ from pathlib import Path
 from models.errors import UserError
 from models.process import EDGE, ROUTERS, Bus, Playback, ProcessContext, process_name
 from services.cli.parts import find_process, load_process
+from services.support.getting_ready import getting_ready
 from services.support.health import ResourceMeter
 from services.support.heartbeat import Heartbeat
 from services.support.signals import stop_on_signals
@@ -53,7 +54,8 @@ def run_process(order: ProcessOrder) -> None:
     if routes and not order.spare:
         # The router first, because everybody waits for it.
         bus = open_router(site.bus.endpoint)
-        main = load_process(entry)
+        with getting_ready(order.name, bus):
+            main = load_process(entry)
     else:
         main = load_process(entry)
         if order.spare and not sys.stdin.buffer.readline():

@@ -15,9 +15,9 @@ from tests.bench.peers.pose2sim_project import JOINTS, run_pose2sim
 from tests.synthetic.gym import ring_rig
 from tests.synthetic.person import Person
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
 
-FRAMES = 30
+FRAMES = 24
 INNER = slice(8, -8)
 """Away from the ends, where filters have less to go by; Pose2Sim's drop the last frame altogether."""
 TOLERANCE_MM = 1.0
@@ -37,10 +37,10 @@ def require(peer: str) -> None:
 def perfect(*, walks: bool) -> tuple[Keypoints, Float]:
     """Exact keypoints of a person, and where the joints are.
 
-    Who does not walk glides, stiff and straight at 1 m/s: that no smoothing may bend, whatever its strength.
+    Who does not walk glides, stiff, straight and slowly: that no smoothing may bend, whatever its strength.
     """
     rig, person = ring_rig(4), Person()
-    along = np.array((1.0, 0.3, 0.0)) / 30
+    along = np.array((0.2, 0.06, 0.0)) / 30
     joints = np.stack([person.joints(k / 30) if walks else person.joints(0.0) + (k - FRAMES / 2) * along for k in range(FRAMES)])
     points = np.stack([camera.project(joints) for camera in rig], axis=1)
     return Keypoints(rig, points, np.full((FRAMES, 4, coco.COUNT), 0.9), 30.0, scale=1.5), joints
@@ -65,8 +65,8 @@ def test_aniposelib_reproduces_a_perfect_scene_in_every_setting(tmp_path: Path) 
     require("aniposelib")
     (walk, walk_m), (glide, glide_m) = perfect(walks=True), perfect(walks=False)
     (plain, ransac, *_), glided = run_aniposelib(tmp_path, [walk, glide])
-    assert worst_mm(plain, walk_m, EVERYTHING) < TOLERANCE_MM
-    assert worst_mm(ransac, walk_m, EVERYTHING) < TOLERANCE_MM
+    for answer in (plain, ransac):
+        assert worst_mm(answer, walk_m, EVERYTHING) < TOLERANCE_MM, answer.method
     for answer in glided:
         assert worst_mm(answer, glide_m, EVERYTHING) < TOLERANCE_MM, answer.method
 
@@ -76,5 +76,5 @@ def test_what_the_network_doubts_is_withheld_from_aniposelib(tmp_path: Path) -> 
     clip, joints_m = perfect(walks=True)
     clip.points_px[:, 0, 9] += 80.0
     clip.scores[:, 0, 9] = 0.2
-    ((plain, *_),) = run_aniposelib(tmp_path, [clip])
+    ((plain,),) = run_aniposelib(tmp_path, [clip], ["plain"])
     assert worst_mm(plain, joints_m, [9]) < TOLERANCE_MM

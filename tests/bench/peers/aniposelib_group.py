@@ -35,23 +35,24 @@ _STAGES = {
 }
 
 
-def run_aniposelib(folder: Path, clips: Sequence[Keypoints]) -> list[list[Answer]]:
-    """Reconstruct clips in every setting.
+def run_aniposelib(folder: Path, clips: Sequence[Keypoints], settings: Sequence[str] = tuple(SETTINGS)) -> list[list[Answer]]:
+    """Reconstruct clips in some settings.
 
     Args:
         folder: an empty folder to work in.
         clips: keypoints, without distortion.
+        settings: of `SETTINGS`.
     """
-    arguments = []
+    arguments = [",".join(settings)]
     for number, clip in enumerate(clips):
         source, target = folder / f"{number}.npz", folder / f"{number}-found.npz"
         np.savez(source, **_arrays(clip))  # type: ignore[arg-type]  # the stub takes `allow_pickle` for any of them
         arguments += [str(source), str(target)]
     times = json.loads(run_in(NAME, arguments))
     answers = []
-    for clip, file, seconds in zip(clips, arguments[1::2], times, strict=True):
+    for clip, file, seconds in zip(clips, arguments[2::2], times, strict=True):
         with np.load(file) as found:
-            answers.append([_answer(setting, found[setting], seconds, len(clip)) for setting in SETTINGS])
+            answers.append([_answer(setting, found[setting], seconds, len(clip)) for setting in settings])
     return answers
 
 
