@@ -56,7 +56,7 @@ class Load:
 
     Attributes:
         granted_cores: CPU that the box may use.
-        used_cores: CPU in use on what is granted, by the box and by others.
+        used_cores: CPU in use on what is granted, by the box and by others, at whatever priority (docs/decisions/0003-governor.md).
         cameras: the newest word of every camera that is alive.
     """
 
