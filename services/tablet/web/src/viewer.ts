@@ -1,6 +1,6 @@
 import { figureAgeMs, Freshness, STALE_AFTER_MS, TOO_LATE_MS, underWayMs } from './connection/freshness';
 import { Link } from './connection/link';
-import { phaseOf, type Phase } from './connection/phase';
+import { figureInterrupted, phaseOf, type Phase } from './connection/phase';
 import { complete, showsSomebody, standing, unsure, type Pose } from './figure/pose';
 import { JointState, MotionFrameError, readMotionFrame, type MotionFrame } from './protocol/motionFrame';
 import type { Room } from './state/room.svelte';
@@ -43,7 +43,10 @@ export class Viewer {
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
     this.link = new Link(`${scheme}://${location.host}/ws`, {
       motion: (buffer) => this.receive(buffer),
-      status: (status) => (this.room.status = status),
+      status: (status) => {
+        this.room.status = status;
+        this.say();
+      },
       changed: () => this.changed(),
     });
     this.link.start();
@@ -134,6 +137,7 @@ export class Viewer {
       failures: this.link.failures,
       hasFigure: this.hasFigure,
       stale: this.freshness.isStale(nowMs),
+      interrupted: figureInterrupted(this.room.status),
       dropping: nowMs - this.droppedMs < STALE_AFTER_MS,
       pupil: this.room.status?.pupil ?? 'unknown',
     });

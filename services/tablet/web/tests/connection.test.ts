@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { BoxClock } from '../src/connection/boxClock';
 import { figureAgeMs, Freshness, STALE_AFTER_MS, underWayMs } from '../src/connection/freshness';
-import { phaseOf, type PhaseInputs } from '../src/connection/phase';
+import { figureInterrupted, phaseOf, type PhaseInputs } from '../src/connection/phase';
 import { reconnectDelayMs } from '../src/connection/reconnect';
 import type { MotionFrame } from '../src/protocol/motionFrame';
 
@@ -112,6 +112,7 @@ describe('the phase', () => {
     failures: 0,
     hasFigure: true,
     stale: false,
+    interrupted: false,
     dropping: false,
     pupil: 'found',
   };
@@ -123,9 +124,27 @@ describe('the phase', () => {
     ['a connection that broke', { connected: false }, 'offline'],
     ['no figure yet', { hasFigure: false, stale: true, pupil: 'unknown' }, 'waiting'],
     ['a figure that became old', { stale: true }, 'stale'],
+    ['a fresh figure whose maker has just died', { interrupted: true }, 'stale'],
     ['a pupil who left', { stale: true, pupil: 'searching' }, 'waiting'],
     ['frames that are all too late', { stale: true, dropping: true }, 'late'],
   ])('with %s', (_name, change, phase) => {
     expect(phaseOf({ ...live, ...change })).toBe(phase);
+  });
+});
+
+describe('what makes the figure', () => {
+  const said = (state: 'ok' | 'degraded' | 'gone' | 'silent' | 'failed', name = 'fusion') => ({
+    processes: [{ name, state, reason: '', age_s: 0, cpu_cores: 0, rss_mb: 0, restarts: 0 }],
+  });
+
+  it('is missed as soon as the box says that it is gone, hangs or failed', () => {
+    expect((['gone', 'silent', 'failed'] as const).map((state) => figureInterrupted(said(state)))).toEqual([true, true, true]);
+  });
+
+  it('is not missed while it works, before it was heard, or for a camera that is gone', () => {
+    expect(figureInterrupted(null)).toBe(false);
+    expect(figureInterrupted({ processes: [] })).toBe(false);
+    expect(figureInterrupted(said('degraded'))).toBe(false);
+    expect(figureInterrupted(said('gone', 'edge-cam01'))).toBe(false);
   });
 });
