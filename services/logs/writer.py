@@ -15,6 +15,7 @@ from pathlib import Path
 from services.logs.files import LATEST, log_numbers, log_path
 from services.logs.record import LogRecord, encode
 
+IN_USE = "another KineBox writes its log there; start this one with a data folder of its own"
 _SUPERVISOR = "supervisor"
 
 
@@ -81,7 +82,7 @@ class LogWriter:
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
-            raise OSError(errno.EBUSY, "another KineBox writes its log there") from error
+            raise OSError(errno.EBUSY, IN_USE) from error
         self._adopt()
         self._begin(max(1, self._number, *log_numbers(self._folder)))
         self._end_torn_line()

@@ -19,7 +19,7 @@ from models.errors import USER_ERROR_PREFIX
 from services.logs.files import LATEST
 from services.logs.readable import details, printable, speaker
 from services.logs.record import LogRecord, record_of
-from services.logs.writer import LogWriter
+from services.logs.writer import IN_USE, LogWriter
 from services.supervisor.traceback_lines import TracebackLines
 
 _LOUD = frozenset({"warning", "error", "critical"})
@@ -100,7 +100,8 @@ class Journal:
         problem, before = self._writer.problem, self._problem
         self._problem = problem
         if problem and not before:
-            event = f"nothing is kept in {self.path}: {problem}; free or mend the disc"
+            remedy = "" if problem == IN_USE else "; free or mend the disc"
+            event = f"nothing is kept in {self.path}: {problem}{remedy}"
             self._show(record_of({"event": event, "level": "warning"}, _SUPERVISOR, _now()))
         elif before and not problem:
             self._show(record_of({"event": f"what is said is kept in {self.path} again"}, _SUPERVISOR, _now()))

@@ -12,7 +12,7 @@ from services.logs.past import last_lines, wanted_lines
 from services.logs.query import Query
 from services.logs.reader import LogReader
 from services.logs.record import encode
-from services.logs.writer import LogWriter
+from services.logs.writer import IN_USE, LogWriter
 from tests.installed import ROOT
 from tests.integration.waiting import until
 from tests.log_lines import NOON, numbered, numbers, raw_lines, whole_log
@@ -67,7 +67,7 @@ def test_a_line_that_a_loss_of_power_cut_off_is_shown_as_damaged_and_the_next_is
 
 def test_only_one_kinebox_writes_to_a_folder(tmp_path: Path) -> None:
     first, second = LogWriter(tmp_path, 10**6, 3), LogWriter(tmp_path, 10**6, 3)
-    assert second.problem == "another KineBox writes its log there"
+    assert second.problem == IN_USE
     second.write(numbered(0))
     first.write(numbered(1))
     first.close()

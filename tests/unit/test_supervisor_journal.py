@@ -8,6 +8,7 @@ from typing import Any
 import msgspec
 import pytest
 
+from services.logs.writer import IN_USE
 from services.supervisor.journal import Journal
 
 
@@ -181,6 +182,18 @@ def test_while_nothing_can_be_kept_people_get_the_tracebacks_too(tmp_path: Path)
         journal.child_said("fusion", line)
     journal.close()
     assert '  File "fusion.py", line 7, in main' in console.getvalue()
+
+
+def test_a_second_box_on_a_folder_says_what_to_do_and_shows_everything(tmp_path: Path) -> None:
+    console = io.StringIO()
+    first, second = Journal(tmp_path), Journal(tmp_path, console)
+    second.child_said("fusion", INFO)
+    second.close()
+    first.close()
+    assert without_time(console) == [
+        f"supervisor    nothing is kept in {second.path}: {IN_USE}",
+        "fusion        governor rate_hz=15",
+    ]
 
 
 def test_a_log_that_can_be_kept_again_is_said(tmp_path: Path) -> None:
