@@ -138,7 +138,11 @@ describe('what makes the figure', () => {
   });
 
   it('is missed as soon as the box says that it is gone, hangs or failed', () => {
-    expect((['gone', 'silent', 'failed'] as const).map((state) => figureInterrupted(said(state)))).toEqual([true, true, true]);
+    expect((['gone', 'silent', 'failed'] as const).map((state) => figureInterrupted(said(state)))).toEqual([
+      true,
+      true,
+      true,
+    ]);
   });
 
   it('is not missed while it works, before it was heard, or for a camera that is gone', () => {
