@@ -18,7 +18,8 @@ MIN_JOINTS = 300
 MIN_OBSERVATIONS = 8
 MIN_PERSON_SHARE = 0.5
 MIN_AGREEMENT = 0.6
-"""In simulation a camera that is turned by one degree agrees in 88 % of the joints, by two degrees in 48 %; a good one in 99 %."""
+"""In simulation a camera that is turned by one degree agrees in 88 % of the joints, by two degrees in 48 %, a good one in 99 %; the
+four of the built-in footage agree in 97 to 99 %."""
 FRESH_MS = 200.0
 _PERSON_JOINTS = 9
 _PERSON_SCORE = 0.3

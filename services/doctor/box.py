@@ -10,7 +10,7 @@ from models.config.site import Site
 from models.messages.health import MachineHealth, Restarts
 from models.process import EDGE, ROUTER, process_name
 from services.doctor.agreement import judge_agreement
-from services.doctor.cameras import judge_camera
+from services.doctor.cameras import is_held_up, judge_camera
 from services.doctor.finding import Examined, Fact, Finding, Level
 from services.doctor.listen import Heard
 from services.doctor.machine import machine_finding
@@ -137,11 +137,29 @@ def _page(box: BoxFacts) -> list[Finding]:
 
 
 def _cameras(box: BoxFacts) -> Iterator[Finding]:
-    for camera in box.site.cameras:
-        health = box.heard.healths.get(process_name(EDGE, camera.name))
-        if health is not None and health.state != "failed":  # then the supervisor tells why
-            yield from judge_camera(camera.name, health, box.now_ns)
+    cameras = [(camera.name, box.heard.healths.get(process_name(EDGE, camera.name))) for camera in box.site.cameras]
+    # Of one that failed the supervisor tells why.
+    heard = [(name, health) for name, health in cameras if health is not None and health.state != "failed"]
+    if len(heard) == len(cameras) and all(is_held_up(name, health, box.now_ns) for name, health in heard):
+        yield _busy(box)
+    else:
+        for name, health in heard:
+            yield from judge_camera(name, health, box.now_ns)
     yield from judge_agreement(box.heard.agreements, (camera.name for camera in box.site.cameras), box.site.calibration)
+
+
+def _busy(box: BoxFacts) -> Finding:
+    """Once, in the place of the same words about every camera."""
+    machine = _machine_of(box)
+    own = sum(health.cpu_cores for health in box.heard.healths.values())
+    load = (
+        ""
+        if machine is None
+        else f" ({machine.used_cores:.1f} of {machine.granted_cores:g} cores are in use, {own:.1f} of them by the box)"
+    )
+    words = f"the box is too busy: all {len(box.site.cameras)} cameras fall behind, and fast movement may be missed{load}"
+    remedy = "end other programs on this machine, use fewer cameras, or a faster box"
+    return Finding("warning", "processor", words, "what the cameras' processes measured in the last second", remedy)
 
 
 def _own_words(box: BoxFacts) -> Iterator[Finding]:

@@ -14,15 +14,28 @@ _REMEDIES: dict[CameraReason, str] = {
 }
 
 
+BUSY_REASONS: frozenset[CameraReason] = frozenset({"behind", "backlog", "sparse"})
+"""Slowness that the box causes, not the camera."""
+
+
+def is_held_up(name: str, health: Health, now_ns: int) -> bool:
+    """Whether a camera is slow for want of CPU."""
+    return _status(name, health, now_ns).reason in BUSY_REASONS
+
+
 def judge_camera(name: str, health: Health, now_ns: int) -> list[Finding]:
     """What is wrong with a camera whose process was just heard; nothing if it works or rests."""
-    status = camera_status(name, HeardHealth(health, now_ns), Presence(True, now_ns), True, now_ns)
+    status = _status(name, health, now_ns)
     if status.state in ("ok", "starting"):
         return []
     level: Level = "fault" if status.state == "lost" else "warning"
     known_by = "what its process measured in the last second"
     remedy = _REMEDIES.get(status.reason, "read the log of its process")
     return [Finding(level, f"camera '{name}'", f"camera '{name}' {_words(status, health)}", known_by, remedy)]
+
+
+def _status(name: str, health: Health, now_ns: int) -> CameraStatus:
+    return camera_status(name, HeardHealth(health, now_ns), Presence(True, now_ns), True, now_ns)
 
 
 def _words(status: CameraStatus, health: Health) -> str:

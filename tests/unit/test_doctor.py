@@ -1,0 +1,216 @@
+"""The doctor's judgement without a machine: facts go in, findings come out."""
+
+import datetime as dt
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from models.config.site import SITE_VERSION, CameraConfig, Site
+from models.errors import UserError
+from models.messages.health import CameraHealth, FusionHealth, Health, MachineHealth, Restarts, SupervisorHealth
+from models.messages.observation import Observation
+from services.doctor.agreement import Agreement, Agreements
+from services.doctor.box import BoxFacts, judge_box
+from services.doctor.finding import Examined, Fact, Finding, fault_of
+from services.doctor.listen import Heard
+from services.doctor.machine import MachineFacts, judge_machine
+from services.doctor.ports import Port, Ports, judge_ports
+from services.doctor.processes import BoxProcess, RunningBox
+from services.doctor.report import as_json, as_text
+from tests.integration.doctor_room import turned
+from tests.synthetic.gym import Gym, ring_rig
+from tests.synthetic.play import play
+
+S = 1_000_000_000
+NOW = 5_000 * S
+NAMES = ("fusion", "edge-a", "edge-b", "tablet", "supervisor")
+SITE = Site(
+    version=SITE_VERSION,
+    name="gym",
+    calibration="rig.toml",
+    cameras=[CameraConfig(name=n, kind="video", path=f"{n}.avi") for n in "ab"],
+)
+MACHINE = MachineHealth(1.9, 2.0, 4000.0, 50_000.0, 55.0, 0, 0.0)
+
+
+def health(name: str, state: str = "ok", reason: str = "", **parts: object) -> Health:
+    if name.startswith("edge-"):
+        parts.setdefault("camera", CameraHealth(name[5:], 30.0, 15.0, 15.0, 0, 20.0, "thunder", {}))
+    if name == "supervisor":
+        parts = {"machine": MACHINE, "supervisor": SupervisorHealth("1.0", NOW - 90 * S, ())} | parts
+    if name == "fusion":
+        parts.setdefault("fusion", FusionHealth(30.0, 2.0, 0.9, 0, {}, "found"))
+    return Health(name, 1, NOW, state, reason, 0.25, 50.0, **parts)  # type: ignore[arg-type]
+
+
+def box(*said: Health, **changes: object) -> BoxFacts:
+    """A box that runs well, but for what these say instead."""
+    healths = {name: health(name) for name in NAMES} | {each.process: each for each in said}
+    heard = Heard("answers", "answers", 5.0, healths, set(NAMES), live=150)
+    facts = BoxFacts(SITE, "box.log", RunningBox(Path("site.toml")), NAMES, heard, "1.0", NOW)
+    return replace(facts, **changes)  # type: ignore[arg-type]
+
+
+def restarted(count: int, ago_s: float, given_up: str = "") -> Health:
+    restarts = (Restarts("edge-a", count, NOW - round(ago_s * S), "hung", given_up),)
+    return health("supervisor", supervisor=SupervisorHealth("1.0", NOW - 9000 * S, restarts))
+
+
+def whats(examined: Examined) -> list[str]:
+    return [finding.what for finding in examined.findings]
+
+
+def test_of_a_box_that_runs_well_nothing_is_found() -> None:
+    judged = judge_box(box())
+    assert judged.findings == ()
+    (fact,) = judged.facts
+    assert fact.words == "version 1.0, up for 90 s, 5 processes speak, 30 figures a second"
+
+
+def test_a_restart_long_ago_is_no_finding_but_many_are() -> None:
+    assert whats(judge_box(box(restarted(1, 3000)))) == []
+    assert whats(judge_box(box(restarted(1, 30)))) == ["edge-a was started again once; 30 s ago it hung"]
+    assert whats(judge_box(box(restarted(3, 3000)))) == ["edge-a was started again 3 times; 50 min ago it hung"]
+
+
+def test_a_process_that_was_given_up_is_told_once_and_not_as_missing_too() -> None:
+    facts = box(restarted(2, 5, "ended 3 times"), health("edge-a", "failed", "ended 3 times", camera=None))
+    facts.heard.alive.discard("edge-a")
+    assert whats(judge_box(facts)) == ["edge-a is given up and does not run any more: ended 3 times"]
+
+
+def test_who_is_on_the_bus_and_says_nothing_hangs_and_who_is_not_is_missing() -> None:
+    facts = box()
+    del facts.heard.healths["tablet"]
+    assert whats(judge_box(facts)) == ["tablet hangs: it is on the bus and said nothing for 5 s"]
+    facts.heard.alive.discard("tablet")
+    assert whats(judge_box(facts)) == ["tablet is missing: it is not on the bus"]
+
+
+def test_a_bus_that_does_not_answer_is_its_router_and_nobody_else_is_blamed() -> None:
+    running = RunningBox(Path("site.toml"), BoxProcess(7, stopped=False), {"fusion": [BoxProcess(8, stopped=False)]})
+    silent = Heard("silent", "answers")
+    assert whats(judge_box(box(running=running, heard=silent))) == [
+        "fusion (process 8) hangs: the bus does not answer, so no other process can be heard"
+    ]
+    (words,) = whats(judge_box(box(running=replace(running, processes={}), heard=silent)))
+    assert words.startswith("fusion is missing, and with it the bus")
+
+
+def test_a_busy_box_is_told_once_and_not_of_each_camera() -> None:
+    slow = [health(f"edge-{n}", camera=CameraHealth(n, 30.0, 2.0, 5.0, 0, 20.0, "lightning", {})) for n in "ab"]
+    (words,) = whats(judge_box(box(*slow)))
+    assert words == (
+        "the box is too busy: all 2 cameras fall behind, and fast movement may be missed "
+        "(1.9 of 2 cores are in use, 1.2 of them by the box)"
+    )
+    (words,) = whats(judge_box(box(slow[0])))
+    assert words == "camera 'a' falls behind: 2.0 of 5 pictures a second are looked at"
+
+
+@pytest.mark.parametrize(
+    ("camera", "words"),
+    [
+        (CameraHealth("a", 0.0, 0.0, 15.0, 0, 0.0, "thunder", {}), "is silent: it delivers no pictures (nothing for 4 s)"),
+        (
+            CameraHealth("a", 30.0, 15.0, 15.0, 0, 400.0, "thunder", {}),
+            "falls behind: its pictures wait 400 ms for their turn (nothing for 4 s)",
+        ),
+        (CameraHealth("a", 30.0, 15.0, 15.0, 0, 20.0, "thunder", {}), "works less well than it should (nothing for 4 s)"),
+    ],
+)
+def test_a_cameras_fault_is_named_with_its_own_words(camera: CameraHealth, words: str) -> None:
+    assert whats(judge_box(box(health("edge-a", "degraded", "nothing for 4 s", camera=camera)))) == [f"camera 'a' {words}"]
+
+
+def test_a_camera_that_rests_is_well() -> None:
+    resting = CameraHealth("a", 30.0, 0.0, 0.0, 0, 0.0, "thunder", {})
+    assert whats(judge_box(box(health("edge-a", camera=resting)))) == []
+
+
+def test_fusions_words_about_who_is_not_heard_are_not_repeated() -> None:
+    reason = "no word from b; b is not fused: its pictures are of a past epoch"
+    (finding,) = judge_box(box(health("fusion", "degraded", reason))).findings
+    assert finding.what == "fusion says: b is not fused: its pictures are of a past epoch"
+    assert "loops" in finding.remedy
+
+
+def test_the_clock_that_was_set_is_known_from_the_box_that_watched_it() -> None:
+    stepped = msgspec.structs.replace(MACHINE, clock_step_ms=-5000.0)
+    (words,) = whats(judge_box(box(health("supervisor", machine=stepped))))
+    assert words == "the clock was set back by 5.0 s in the last minute"
+
+
+def test_few_figures_are_a_finding_only_while_somebody_is_in_view() -> None:
+    for pupil, count in (("found", 1), ("searching", 0)):
+        fusion = FusionHealth(12.0, 2.0, 0.9, 0, {}, pupil)  # type: ignore[arg-type]
+        assert len(judge_box(box(health("fusion", fusion=fusion))).findings) == count
+
+
+def test_views_of_a_good_calibration_agree_and_a_turned_camera_is_doubtful() -> None:
+    rig = ring_rig()
+    for degrees, doubtful in ((0.0, []), (4.0, ["cam1"])):
+        agreements = Agreements()
+        events = Gym(seconds=3.0).events()
+        for motion in play(turned("cam1", degrees), events).live[45:]:
+            agreements.add_motion(motion)
+        for event in events:
+            if isinstance(event, Observation):
+                agreements.add_observation(event)
+        assert [name for name in rig.names if agreements.cameras[name].doubtful] == doubtful
+
+
+def test_a_camera_that_sees_nobody_is_not_doubted() -> None:
+    assert not Agreement(observations=100, persons=10, joints=5000, agreed=0).doubtful
+    assert not Agreement(observations=100, persons=100, joints=100, agreed=0).doubtful
+    assert Agreement(observations=100, persons=100, joints=5000, agreed=2000).doubtful
+
+
+@pytest.mark.parametrize(
+    ("changes", "where"),
+    [
+        ({"architecture": "riscv64"}, "processor"),
+        ({"flags": frozenset()}, "processor"),
+        ({"health": msgspec.structs.replace(MACHINE, granted_cores=0.5)}, "processor"),
+        ({"wall": dt.datetime(2020, 1, 1, tzinfo=dt.UTC)}, "clock"),
+        ({"data_problem": "does not exist"}, "data folder"),
+    ],
+)
+def test_a_machine_that_will_not_do_is_found(changes: dict[str, object], where: str) -> None:
+    wall = dt.datetime(2027, 1, 1, tzinfo=dt.UTC)
+    good = MachineFacts(MACHINE, "a processor", "x86_64", frozenset({"avx2"}), 4, 8000.0, wall, Path("build"), "")
+    assert judge_machine(good).findings == ()
+    (finding,) = judge_machine(replace(good, **changes)).findings  # type: ignore[arg-type]
+    assert finding.where == where
+
+
+def test_a_port_that_nobody_can_be_seen_to_have_comes_with_how_to_find_out() -> None:
+    (finding,) = judge_ports(Ports((Port("bus", "bus.endpoint", 7447, taken=True),))).findings
+    assert "sudo ss -ltnp" in finding.remedy
+    assert judge_ports(Ports((Port("bus", "bus.endpoint", 7447, taken=True, pid=5, ours=True),))).findings == ()
+
+
+def test_the_remedy_is_what_an_error_for_people_ends_with() -> None:
+    finding = fault_of("camera 'b'", UserError("camera 'b': b.avi; c.avi are missing; run `make footage`"), "looking")
+    assert (finding.what, finding.remedy) == ("camera 'b': b.avi; c.avi are missing", "run `make footage`")
+    assert fault_of("x", "it is broken", "looking").remedy == "correct it"
+
+
+def test_the_worst_comes_first_and_nothing_twice() -> None:
+    warning, fault = (Finding(level, "disk", level, "k", "r") for level in ("warning", "fault"))
+    joined = Examined.join([Examined((warning,), (Fact("a", "b"),)), Examined((fault, warning))])
+    assert joined == Examined((fault, warning), (Fact("a", "b"),))
+    text = as_text(joined)
+    assert text.startswith("Found: 1 fault and 1 warning, the worst first.")
+    assert text.index("FAULT") < text.index("WARNING") < text.index("Looked at")
+    told = json.loads(as_json(joined))
+    assert not told["good"]
+    assert [finding["level"] for finding in told["findings"]] == ["fault", "warning"]
+
+
+def test_paths_in_the_report_are_never_cut() -> None:
+    path = "/" + "x" * 200
+    assert path in as_text(Examined((Finding("fault", "disk", f"the file {path} is gone", "k", "r"),)))
