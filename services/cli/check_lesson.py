@@ -27,6 +27,7 @@ def check_lesson(file: Path) -> bool:
         # First of all: whoever reads on shall know what to expect.
         for line in changed:
             typer.echo(f"note: {line}", err=True)
+        progress.show("getting ready; the first time on a machine, kernels are compiled for a minute or two")
         began_s = time.monotonic()
         items = replay(lesson.parts(), header.rig(), configuration(header.preset))
         found = compare(_watched(items, header.started_ns, progress))

@@ -1,0 +1,133 @@
+"""`kinebox record` and `kinebox lessons` as people type them, with a real recorder on real sockets."""
+
+import json
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from models.config.site import LessonsConfig
+from services.lesson.layout import PART_SUFFIX
+from services.lesson.lesson_file import LessonWriter
+from tests.integration.test_recorder_process import ROOT, Box
+from tests.integration.waiting import until
+from tests.synthetic.gym import Gym
+from tests.synthetic.gym_lesson import gym_header
+
+pytestmark = pytest.mark.slow
+
+COMMAND = (sys.executable, "-m", "services.cli.main")
+
+
+def kinebox(*words: str) -> "subprocess.CompletedProcess[str]":
+    return subprocess.run([*COMMAND, *words], capture_output=True, text=True, cwd=ROOT, timeout=100, check=False, input="")
+
+
+def record(box: Box, *words: str) -> "subprocess.CompletedProcess[str]":
+    return kinebox("record", "--site", str(box.site), "--data", str(box.data), *words)
+
+
+def refusal(result: "subprocess.CompletedProcess[str]") -> str:
+    assert result.returncode == 2, result.stdout + result.stderr
+    assert result.stdout == ""
+    assert result.stderr.count("\n") == 1
+    return result.stderr.removeprefix("kinebox: ")
+
+
+def test_a_lesson_is_recorded_for_as_long_as_was_said_listed_checked_and_removed(tmp_path: Path) -> None:
+    with Box(tmp_path, LessonsConfig()).running() as box, box.recorder():
+        done = record(box, "--title", "7b, throwing", "--for", "2s")
+        assert done.returncode == 0, done.stderr
+        (file,) = box.lessons.glob("*.mcap")
+        assert done.stdout.splitlines()[0] == f"recording {file.stem} for 0:02"
+        assert done.stdout.splitlines()[1].startswith(f"recorded {file}, 0:0")
+        assert "no lesson is being recorded" in refusal(record(box, "--stop"))
+    assert file.stem.endswith("-7b-throwing")
+    (listed,) = json.loads(kinebox("lessons", "--data", str(box.data), "--json").stdout)
+    assert (listed["lesson"], listed["title"], listed["state"], listed["gaps"]) == (file.stem, "7b, throwing", "finished", 0)
+    assert (listed["file"], listed["bytes"]) == (str(file), file.stat().st_size)
+    assert listed["seconds"] > 1
+    assert file.stem in kinebox("lessons", "--data", str(box.data), "--site", str(box.site)).stdout
+    by_name = kinebox("replay", "nonsense", "--check", "--data", str(box.data))
+    assert "no lesson 'nonsense' in" in refusal(by_name)
+    checked = kinebox("replay", str(file), "--check", "--data", str(ROOT / "build"))  # where kernels are compiled already
+    assert checked.returncode == 0, checked.stderr
+    assert "are equal bit for bit" in checked.stdout
+
+    asked = kinebox("lessons", "delete", file.stem, "--data", str(box.data))
+    assert asked.returncode != 0, "nobody answered the question"
+    assert file.is_file()
+    assert kinebox("lessons", "delete", file.stem, "--data", str(box.data), "--yes").stdout == f"removed {file}\n"
+    assert not file.exists()
+    assert json.loads(kinebox("lessons", "--data", str(box.data), "--json").stdout) == []
+    assert "lists what there is" in refusal(kinebox("lessons", "delete", file.stem, "--data", str(box.data), "--yes"))
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_the_lesson_and_says_where_it_is(tmp_path: Path, number: signal.Signals) -> None:
+    with Box(tmp_path, LessonsConfig()).running() as box, box.recorder() as recorder:
+        words = [*COMMAND, "record", "--site", str(box.site), "--data", str(box.data)]
+        # Whatever runs the tests may have left SIGINT ignored, and children inherit that.
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)
+        with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT) as process:
+            signal.signal(signal.SIGINT, before)
+            box.wait_recorded(recorder.pid, parts=2)
+            process.send_signal(number)
+            out, errors = process.communicate(timeout=60)
+        assert (process.returncode, errors) == (0, "")
+        (file,) = box.lessons.glob("*.mcap")
+        assert f"recorded {file}, 0:0" in out
+
+
+def test_a_lesson_is_begun_and_left_seen_to_run_and_ended_from_elsewhere(tmp_path: Path) -> None:
+    with Box(tmp_path, LessonsConfig()).running() as box, box.recorder():
+        begun = record(box, "--detach")
+        assert begun.returncode == 0, begun.stderr
+        assert begun.stdout.endswith("; 'kinebox record --stop' ends it\n")
+        assert "is being recorded already" in refusal(record(box))
+        (part,) = box.lessons.glob(f"*{PART_SUFFIX}")
+        lesson = part.name.removesuffix(PART_SUFFIX)
+        assert "is not finished" in refusal(kinebox("lessons", "delete", lesson, "--data", str(box.data), "--yes"))
+        assert record(box, "--stop").stdout.startswith(f"recorded {box.lessons / lesson}.mcap")
+        until(lambda: not part.exists(), "the lesson to be finished")
+
+
+def test_without_a_box_or_without_its_recorder_there_is_one_line(tmp_path: Path) -> None:
+    box = Box(tmp_path, LessonsConfig())
+    assert "no box runs at tcp/127.0.0.1:" in refusal(record(box))
+    with box.running():
+        assert "the box's recorder is not heard" in refusal(record(box))
+
+
+def test_a_disk_too_full_is_told_with_the_key_that_says_how_full(tmp_path: Path) -> None:
+    with Box(tmp_path, LessonsConfig(least_free_mb=1_000_000)).running() as box, box.recorder():
+        assert "lessons.least_free_mb is 1000000" in refusal(record(box))
+        assert not list(box.lessons.glob("*.mcap*"))
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (("--for", "3"), "--for: '3' is no length of time"),
+        (("--title", "x" * 81), "--title: a title has at most 80 characters"),
+        (("--stop", "--detach"), "--stop goes with no other option"),
+        (("--detach", "--for", "3m"), "--detach goes with no other option"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_before_anybody_is_asked(tmp_path: Path, words: tuple[str, ...], line: str) -> None:
+    assert line in refusal(record(Box(tmp_path, LessonsConfig()), *words))
+
+
+def test_the_list_tells_what_is_wrong_with_a_lesson(tmp_path: Path) -> None:
+    folder = tmp_path / "lessons"
+    assert "no lesson in" in kinebox("lessons", "--data", str(tmp_path)).stdout
+    folder.mkdir()
+    LessonWriter.create(folder, "empty", gym_header(Gym(), title="nothing")).finish()
+    (folder / "foreign.mcap").write_bytes(b"no lesson")
+    listed = kinebox("lessons", "--data", str(tmp_path))
+    assert listed.returncode == 0
+    assert [line.split()[0] for line in listed.stdout.splitlines()[1:]] == ["foreign", "empty"]
+    assert "damaged" in listed.stdout
+    assert "foreign: " in listed.stderr
