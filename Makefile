@@ -6,6 +6,7 @@ MAKEFLAGS += --no-builtin-rules
 SOURCE ?= footage
 DATA   ?= build
 SITE   ?= deploy/sites/$(SOURCE)/site.toml
+SHARED ?= ../shared/data
 
 VENV   := .venv
 PYTHON := $(VENV)/bin/python
@@ -15,7 +16,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks footage web kernels lock clean distclean test-faults test-mutations bench-faults bench-start bench-box bench-footage bench-peers bench-lessons
+.PHONY: help run test check setup networks footage web kernels lock clean distclean test-faults test-mutations bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
@@ -23,7 +24,7 @@ help: ## Show this list
 run: setup ## Start KineBox on the built-in footage and print the address of the page
 	@exec kinebox run --site $(SITE) --data $(DATA)
 
-test: setup ## Every test: unit, property, golden, real sockets and processes, the page in Chromium
+test: setup $(DATA)/footage/installed.json $(DATA)/footage2/installed.json ## Every test: unit, property, golden, real sockets and processes, the page in Chromium
 	@$(MAKE) --no-print-directory lint
 	cd $(WEB) && npm run --silent check && npm test
 	$(PYTHON) -m pytest
@@ -54,9 +55,10 @@ $(DATA)/networks/installed.json: models/networks/manifest.toml $(wildcard models
 	@$(PYTHON) -m models.networks.build.install --data $(DATA)
 	@touch $@
 
-footage: $(DATA)/footage/installed.json ## Fetch and prepare the built-in footage
-$(DATA)/footage/installed.json: $(wildcard edge/footage/*.py) | $(VENV)/.ready
-	@$(PYTHON) -m edge.footage.prepare --data $(DATA)
+FOOTAGES := footage footage2
+footage: $(patsubst %,$(DATA)/%/installed.json,$(filter $(SOURCE),$(FOOTAGES))) ## Fetch and prepare the built-in footage that SOURCE names
+$(FOOTAGES:%=$(DATA)/%/installed.json): $(wildcard edge/footage/*.py) | $(VENV)/.ready
+	@$(PYTHON) -m edge.footage.prepare --data $(DATA) --name $(notdir $(@D))
 	@touch $@
 
 web: $(WEB)/dist/index.html ## Build the tablet's page
@@ -106,6 +108,12 @@ bench-footage: setup build/peers/pose2sim/.ready ## Accuracy on the built-in foo
 bench-peers: setup build/peers/pose2sim/.ready build/peers/aniposelib/.ready ## Pose2Sim and aniposelib beside our fusion, on the same keypoints
 	$(PYTHON) -m tests.bench.peers --data $(DATA)
 
+bench-footage2: setup $(DATA)/footage2/installed.json ## The pupil among two people, on the second built-in footage
+	$(PYTHON) -m tests.bench.footage2 --data $(DATA)
+
+bench-shelf: $(VENV)/.ready ## Everyone on the Shelf data (SHARED, not part of the repository), beside a greedy baseline
+	$(PYTHON) -m tests.bench.shelf --data $(DATA) --shared $(SHARED)
+
 lock: ## Compile requirements.lock anew after a change of pyproject.toml
 	$(PYTHON) -m venv build/lock && build/lock/bin/pip install --quiet uv
 	build/lock/bin/uv pip compile pyproject.toml --extra web --extra dev --universal --python-version 3.11 \
@@ -115,4 +123,4 @@ clean: ## Remove what was built, but not the downloads' results
 	rm -rf $(WEB)/dist $(DATA)/kernels $(DATA)/bench $(DATA)/logs .mypy_cache .ruff_cache .pytest_cache
 
 distclean: clean ## Remove everything that was installed or downloaded, too
-	rm -rf $(VENV) $(DATA)/networks $(DATA)/footage build/peers build/lock $(WEB)/node_modules *.egg-info .hypothesis .import_linter_cache
+	rm -rf $(VENV) $(DATA)/networks $(FOOTAGES:%=$(DATA)/%) build/peers build/lock $(WEB)/node_modules *.egg-info .hypothesis .import_linter_cache

@@ -6,14 +6,16 @@ from pathlib import Path
 import pytest
 
 from edge.footage.prepare import is_ready
+from edge.footage.sets import ONE_PERSON, Footage
 
 ROOT = Path(__file__).parents[1]
 DATA = ROOT / "build"
 
 
-def require_footage() -> Path:
-    """The data folder, with the built-in footage in it."""
-    return _require(is_ready(DATA / "footage"), "the built-in footage is not in build/footage; run `make footage`")
+def require_footage(footage: Footage = ONE_PERSON) -> Path:
+    """The data folder, with a built-in footage in it."""
+    name = footage.name
+    return _require(is_ready(DATA, footage), f"the built-in footage is not in build/{name}; run `make footage SOURCE={name}`")
 
 
 def require_networks() -> Path:

@@ -23,11 +23,12 @@ BAR_LEVEL = 40.0
 """Mean grey level under which an edge row belongs to a black bar; the bars measure 1-12, the pictures above 75."""
 
 
-def transcode(source: bytes, target: Path, camera: str) -> int:
+def transcode(source: bytes, target: Path, camera: str, *, fitted: bool) -> int:
     """Write the video file `source` as Motion JPEG of `SIZE_PX` to `target`, which appears only when it is complete.
 
-    Two of the four videos were published at 1080 px width: the calibrated 1088x1920 scaled to fit, with black bars of 7 px
-    above and below. Cutting the bars off before scaling undoes that, so that one calibrated pixel is the same size everywhere.
+    Two of the first footage's videos were published at 1080 px width: the calibrated 1088x1920 scaled to fit, with black bars of
+    7 px above and below. Where videos are `fitted` so, the bars are cut off before scaling, which undoes that: one calibrated
+    pixel is the same size everywhere.
 
     Returns:
         The number of pictures.
@@ -39,7 +40,7 @@ def transcode(source: bytes, target: Path, camera: str) -> int:
     try:
         with av.open(io.BytesIO(source), "r") as video:
             rate = Fraction(video.streams.video[0].average_rate or 60)
-            count = write_motion_jpeg(part, _scaled(video), rate)
+            count = write_motion_jpeg(part, _scaled(video, fitted=fitted), rate)
     except (av.FFmpegError, IndexError) as error:
         part.unlink(missing_ok=True)
         raise UserError(f"footage: {camera}: its video cannot be read ({error}); fetch it again") from error
@@ -47,8 +48,8 @@ def transcode(source: bytes, target: Path, camera: str) -> int:
     return count
 
 
-def _scaled(video: av.container.InputContainer) -> Iterator[UInt8]:
-    rows: slice | None = None
+def _scaled(video: av.container.InputContainer, *, fitted: bool) -> Iterator[UInt8]:
+    rows: slice | None = None if fitted else slice(None)
     for frame in video.decode(video=0):
         picture = cast(UInt8, frame.to_ndarray(format="bgr24"))
         rows = rows or picture_rows(picture)

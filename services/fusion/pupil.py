@@ -86,8 +86,7 @@ class Pupil:
             return
         sighting, swapped = repair(found, expected)
         if self._outvoted(camera, sighting, expected, config):
-            self.misses[camera] += 1
-            return
+            return  # no miss: the camera looks at the right place, where somebody else stands before the pupil
         self.misses[camera] = 0
         self._identities[camera] = found.track
         repaired = sighting is not found

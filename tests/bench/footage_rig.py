@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 
 from edge.cameras.video import load_video
-from edge.footage.prepare import CALIBRATION, CAMERAS, PACKAGE, VERSION
+from edge.footage.sets import CALIBRATION, CAMERAS, ONE_PERSON, PACKAGE, VERSION, Footage
 from edge.footage.transcode import SIZE_PX
 from edge.observe import Networks
 from edge.offline import observe_video
@@ -24,20 +24,16 @@ from services.calibration.qualisys import decode_qualisys
 from services.calibration.resolution import resized
 from services.calibration.shift import residuals_px, solve_shifts
 
-RIG_FILE = Path(__file__).parents[2] / "deploy/sites/footage/rig.toml"
-SOURCE = (
-    f"{CALIBRATION} of {PACKAGE} {VERSION} (BSD-3-Clause), converted to {SIZE_PX[0]}x{SIZE_PX[1]} px by tests/bench/footage_rig.py"
-)
+SITES = Path(__file__).parents[2] / "deploy/sites"
 SOLVED_ON = slice(0, 50)
 REPORTED_ON = slice(50, 100)
 CALIBRATED_WIDTH_PX = 1088
 SCORE_MIN = 0.3
 
 
-def converted_rig(data: Path) -> Rig:
-    """Qualisys's calibration at the prepared resolution, without shifts."""
-    rig = decode_qualisys((data / "footage" / CALIBRATION).read_bytes(), CALIBRATION)
-    return Rig(tuple(resized(camera, SIZE_PX) for camera in rig))
+def calibrated_rig(data: Path, footage: Footage) -> Rig:
+    """Qualisys's calibration, at the resolution that it was made in."""
+    return decode_qualisys((data / footage.name / CALIBRATION).read_bytes(), CALIBRATION)
 
 
 def pupil_keypoints(data: Path) -> tuple[Float, Float]:
@@ -45,7 +41,7 @@ def pupil_keypoints(data: Path) -> tuple[Float, Float]:
     cv2.setNumThreads(1)
     pose, detector = load_pose_network("thunder", data), load_person_detector(data, score_min=0.25)
     networks = Networks(pose, lambda: detector)
-    views = [observe_video(load_video(data / f"footage/{name}.avi", name), networks, 30.0) for name in CAMERAS]
+    views = [observe_video(load_video(data / ONE_PERSON.name / f"{name}.avi", name), networks, 30.0) for name in CAMERAS]
     pupils = [[_tallest(observation) for observation in view] for view in views]
     points = np.array([[np.full((17, 2), np.nan) if p is None else p.keypoints_px for p in view] for view in pupils], np.float64)
     scores = np.array([[np.zeros(17) if p is None else p.score for p in view] for view in pupils], np.float64)
@@ -61,15 +57,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--data", type=Path, default=Path("build"))
     data: Path = parser.parse_args().data
-    points, scores = pupil_keypoints(data)
-    rig = converted_rig(data)
+    rig = Rig(tuple(resized(camera, SIZE_PX) for camera in calibrated_rig(data, ONE_PERSON)))
+    write_shifted(rig, *pupil_keypoints(data), ONE_PERSON, Path(__file__).name)
+
+
+def write_shifted(rig: Rig, points: Float, scores: Float, footage: Footage, tool: str) -> None:
+    """Solve the shifts, report what they change, and write the site's calibration; keypoints as `pupil_keypoints` has them."""
     shifts = np.round(solve_shifts(rig, points[SOLVED_ON], scores[SOLVED_ON]), 2)
     to_full = CALIBRATED_WIDTH_PX / SIZE_PX[0]
     for name, used in (("without shifts", rig), ("with shifts", rig.with_shifts(shifts))):
         residuals = residuals_px(used, points[REPORTED_ON], scores[REPORTED_ON]) * to_full
         per_camera = ", ".join(f"{np.nanmedian(residuals[:, i]):.1f}" for i in range(len(rig)))
         print(f"{name}: median {np.nanmedian(residuals):.1f} px of {CALIBRATED_WIDTH_PX} (cameras {per_camera})")
-    RIG_FILE.write_bytes(encode_rig(rig.with_shifts(shifts), SOURCE))
+    converted = f"converted to {SIZE_PX[0]}x{SIZE_PX[1]} px by tests/bench/{tool}"
+    source = f"{CALIBRATION} of {PACKAGE} {VERSION} (BSD-3-Clause), {converted}"
+    (SITES / footage.name / "rig.toml").write_bytes(encode_rig(rig.with_shifts(shifts), source))
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from edge.cameras.video import Video, load_video
+from edge.footage.sets import ONE_PERSON, Footage
 from edge.observe import EdgeConfig, EdgeState, Networks, Stages, observe
 from edge.perception.detection import load_person_detector
 from edge.perception.networks import Provider
@@ -55,9 +56,9 @@ class Reconstruction:
     cpu_s: float
 
 
-def load_videos(rig: Rig, data: Path) -> list[Video]:
-    """The prepared footage."""
-    return [load_video(data / "footage" / f"{name}.avi", name) for name in rig.names]
+def load_videos(rig: Rig, data: Path, footage: Footage = ONE_PERSON) -> list[Video]:
+    """A prepared footage."""
+    return [load_video(data / footage.name / f"{name}.avi", name) for name in rig.names]
 
 
 def look(

@@ -13,6 +13,7 @@ from edge.cameras.shape import read_avi_shape
 from edge.cameras.video import load_video
 from edge.footage import prepare as footage
 from edge.footage.index import Index
+from edge.footage.sets import CALIBRATION, CAMERAS, FOOTAGES, Footage
 from edge.footage.transcode import SIZE_PX, picture_rows, transcode
 from models.arrays import UInt8
 from models.errors import UserError
@@ -43,7 +44,7 @@ class Registry:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.fetched = 0
-        self.cameras = list(footage.CAMERAS)
+        self.cameras = list(CAMERAS)
         self.video = video_bytes(barred_picture())
         monkeypatch.setattr("models.networks.build.registry.fetch_pypi", self.fetch)
 
@@ -52,9 +53,10 @@ class Registry:
         self.fetched += 1
         wheel = folder / f"{package}-{version}{suffix}"
         with zipfile.ZipFile(wheel, "w") as archive:
-            archive.writestr(f"{footage.DEMO}/calibration/{footage.CALIBRATION}", "<calibration/>")
-            for camera in self.cameras:
-                archive.writestr(f"{footage.DEMO}/videos/{camera}.mp4", self.video)
+            for demo in (made.demo for made in FOOTAGES.values()):
+                archive.writestr(f"{demo}/calibration/{CALIBRATION}", "<calibration/>")
+                for camera in self.cameras:
+                    archive.writestr(f"{demo}/videos/{camera}.mp4", self.video)
         return wheel
 
 
@@ -63,10 +65,12 @@ def registry(monkeypatch: pytest.MonkeyPatch) -> Registry:
     return Registry(monkeypatch)
 
 
-def test_what_is_prepared_can_be_played_and_nothing_else_stays(registry: Registry, tmp_path: Path) -> None:
-    folder = footage.prepare(tmp_path)
+@pytest.mark.parametrize("made", FOOTAGES.values(), ids=FOOTAGES)
+def test_what_is_prepared_can_be_played_and_nothing_else_stays(registry: Registry, tmp_path: Path, made: Footage) -> None:
+    folder = footage.prepare(tmp_path, made)
+    assert [path.name for path in tmp_path.iterdir()] == [made.name]
     assert sorted(path.name for path in folder.iterdir()) == sorted(
-        ["Calib.qca.txt", *[f"{c}.avi" for c in footage.CAMERAS], "installed.json"]
+        ["Calib.qca.txt", *[f"{c}.avi" for c in CAMERAS], "installed.json"]
     )
     video = load_video(folder / "cam02.avi", "cam02")
     assert (video.size_px, len(video.pictures)) == (SIZE_PX, FRAMES)
@@ -80,6 +84,14 @@ def test_bars_are_cut_off_and_the_picture_fills_the_frame(tmp_path: Path) -> Non
     rows = video.frame(0, 0, 0).image().mean(axis=(1, 2))
     assert rows[:8].mean() > 200
     assert rows[-8:] == pytest.approx(np.full(8, 120), abs=12)
+
+
+@pytest.mark.usefixtures("registry")
+def test_the_second_footage_keeps_its_whole_pictures_since_its_calibration_knows_of_their_edges(tmp_path: Path) -> None:
+    assert footage.main(["--data", str(tmp_path), "--name", "footage2"]) == 0
+    rows = load_video(tmp_path / "footage2/cam01.avi", "cam01").frame(0, 0, 0).image().mean(axis=(1, 2))
+    assert rows[:8].mean() < 30
+    assert rows[-8:].mean() < 30
 
 
 def test_bars_are_found_to_the_row_and_a_picture_without_bars_stays_whole() -> None:
@@ -97,7 +109,7 @@ def test_a_second_call_finds_everything_in_place(registry: Registry, tmp_path: P
 @pytest.mark.parametrize("damage", ["truncated", "changed", "missing", "no index", "torn index", "older recipe"])
 def test_damage_is_found_and_mended(tmp_path: Path, damage: str) -> None:
     folder = footage.prepare(tmp_path)
-    assert footage.is_ready(folder)
+    assert footage.is_ready(tmp_path)
     file, index = folder / "cam03.avi", folder / "installed.json"
     data = file.read_bytes()
     match damage:
@@ -113,9 +125,9 @@ def test_damage_is_found_and_mended(tmp_path: Path, damage: str) -> None:
             index.write_text(index.read_text()[:40])
         case "older recipe":
             index.write_text(index.read_text().replace("recipe 1", "recipe 0"))
-    assert not footage.is_ready(folder)
+    assert not footage.is_ready(tmp_path)
     footage.prepare(tmp_path)
-    assert footage.is_ready(folder)
+    assert footage.is_ready(tmp_path)
     assert file.read_bytes() == data
 
 
@@ -134,7 +146,7 @@ def test_a_package_without_a_video_is_one_line_and_leaves_no_index(
     assert footage.main(["--data", str(tmp_path)]) == 2
     message = capsys.readouterr().err.splitlines()[-1]
     assert "videos/cam04.mp4" in message
-    assert not footage.is_ready(tmp_path / "footage")
+    assert not footage.is_ready(tmp_path)
 
 
 def test_a_folder_that_cannot_be_used_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -147,5 +159,5 @@ def test_a_folder_that_cannot_be_used_is_one_line(tmp_path: Path, capsys: pytest
 
 def test_a_video_that_cannot_be_read_names_its_camera_and_leaves_nothing(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="footage: cam02: "):
-        transcode(b"no video at all" * 100, tmp_path / "cam02.avi", "cam02")
+        transcode(b"no video at all" * 100, tmp_path / "cam02.avi", "cam02", fitted=True)
     assert list(tmp_path.iterdir()) == []

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from edge.footage.prepare import CALIBRATION
+from edge.footage.sets import CALIBRATION
 from edge.footage.transcode import SIZE_PX
 from models.arrays import Float
 from models.camera.rig import Rig, decode_rig, encode_rig
