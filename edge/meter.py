@@ -6,6 +6,8 @@ from models.messages.health import CameraHealth, Health
 from models.process import Resources
 
 PERIOD_NS = 1_000_000_000
+BLACK_LEVEL = 24.0
+"""A covered lens delivers grey levels below this, a dim gym some places above 60."""
 SILENT_NS = 700_000_000
 """A camera that showed nothing for this long, and for two of its pictures, is reported, and at once."""
 
@@ -27,6 +29,7 @@ class Meter:
     inferred: int = 0
     damaged: int = 0
     backlog_ns: int = 0
+    bright: float | None = None
     spacing_ns: int = 0
     silence_told: bool = False
     spent_ns: dict[str, int] = field(default_factory=dict)
@@ -46,6 +49,11 @@ class Meter:
     def waited(self, age_ns: int) -> None:
         """A picture had this age when its turn came."""
         self.backlog_ns = max(self.backlog_ns, age_ns)
+
+    def saw(self, bright: float | None) -> None:
+        """The brightest places of a picture had this grey level."""
+        if bright is not None:
+            self.bright = bright if self.bright is None else max(self.bright, bright)
 
     def is_due(self, t_now_ns: int) -> bool:
         """Whether a second has passed since the last report, or the camera has just fallen silent."""
@@ -67,6 +75,7 @@ class Meter:
             stage_ms={stage: spent * 1e-6 / max(1, self.inferred) for stage, spent in self.spent_ns.items()},
         )
         self.pictures = self.inferred = self.damaged = self.backlog_ns = 0
+        self.bright = None
         self.spent_ns = dict.fromkeys(self.spent_ns, 0)
         self.t_report_ns = t_now_ns
         self.t_mid_reported_ns = self.t_mid_ns
@@ -99,6 +108,8 @@ class Meter:
         reasons = []
         if self._silent():
             reasons.append(f"camera '{self.camera}' has shown nothing for {self._silence_ns() * 1e-9:.0f} s")
+        if self.bright is not None and self.bright < BLACK_LEVEL:
+            reasons.append(f"camera '{self.camera}' shows black pictures; is its lens covered, or the light off?")
         if self.damaged:
             reasons.append(f"camera '{self.camera}': {self.damaged} damaged pictures in the last second")
         if problem:

@@ -84,13 +84,15 @@ class EdgeConfig:
 class EdgeState:
     """What is carried from frame to frame.
 
-    `t_seam_ns` is the instant of the first picture of the present epoch; 0 in the first one.
+    `t_seam_ns` is the instant of the first picture of the present epoch; 0 in the first one. `bright` is the grey level (0 to 255)
+    of the brightest places of the last picture that was decoded; None before the first.
     """
 
     epoch: int | None = None
     t_seam_ns: int = 0
     sequence: int = 0
     tracks: Tracks = field(default_factory=Tracks)
+    bright: float | None = None
 
 
 @dataclass
@@ -110,6 +112,11 @@ class Stages:
             self.spent_ns[stage] = self.spent_ns.get(stage, 0) + self.cpu_ns() - begin_ns
 
 
+_SAMPLES = 64
+"""Rows and columns of which the brightness is taken."""
+_BRIGHT_SHARE = 1000
+
+
 class _Pictures:
     """One frame decoded at the resolutions that are asked for, each once."""
 
@@ -123,6 +130,14 @@ class _Pictures:
             with self._stages.measure("decode"):
                 self._decoded[reduction] = self._frame.image(reduction)
         return self._decoded[reduction]
+
+    def bright(self) -> float | None:
+        """Grey level of the brightest thousandth of the picture, which a few hot pixels are not; None if none was decoded."""
+        for image in self._decoded.values():
+            sample = image[:: max(image.shape[0] // _SAMPLES, 1), :: max(image.shape[1] // _SAMPLES, 1), 1]
+            rank = sample.size - 1 - sample.size // _BRIGHT_SHARE
+            return float(np.partition(sample, rank, axis=None)[rank])
+        return None
 
 
 def observe(
@@ -163,7 +178,9 @@ def observe(
         network=networks.pose.name,
         persons=persons,
     )
-    return replace(state, sequence=state.sequence + 1, tracks=tracks), observation
+    bright = pictures.bright()
+    state = replace(state, sequence=state.sequence + 1, tracks=tracks, bright=state.bright if bright is None else bright)
+    return state, observation
 
 
 def _across_seam(state: EdgeState, frame: Frame) -> EdgeState:

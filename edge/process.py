@@ -196,6 +196,7 @@ class EdgeLoop:
             self._meter.damaged += 1
             return
         self._meter.inferred += 1
+        self._meter.saw(self._progress.state.bright)
         with stages.measure("encode"):
             stamped = msgspec.structs.replace(observation, t_published_ns=self._clock.now_ns())
             self._context.bus.publish(topics.observation(self._camera), codec.encode(stamped))

@@ -31,6 +31,8 @@ def judge_camera(name: str, health: Health, now_ns: int) -> list[Finding]:
     level: Level = "fault" if status.state == "lost" else "warning"
     known_by = "what its process measured in the last second"
     remedy = _REMEDIES.get(status.reason, "read the log of its process")
+    if "black" in health.reason:
+        remedy = "take the cap off its lens, or turn on the light"
     return [Finding(level, f"camera '{name}'", f"camera '{name}' {_words(status, health)}", known_by, remedy)]
 
 

@@ -171,14 +171,18 @@ def port_taken_by_another_box(folder: Path) -> Iterator[Examined]:
 
 
 def running(
-    stage_it: Callable[[Box], object], orders: dict[str, str] | None = None, more: str = "", edge: str | None = None
+    stage_it: Callable[[Box], object],
+    orders: dict[str, str] | None = None,
+    more: str = "",
+    edge: str | None = None,
+    film: Callable[[Path], None] = small_edge.write_film,
 ) -> Stage:
     """A box that runs, to which something happens."""
 
     @contextmanager
     def stage(folder: Path) -> Iterator[Examined]:
-        for name in "ab":
-            small_edge.write_film(folder / "data" / "footage" / f"{name}.avi")
+        small_edge.write_film(folder / "data" / "footage" / "a.avi")
+        film(folder / "data" / "footage" / "b.avi")
         with Box(folder, orders, more, *([edge] if edge else [])) as box:
             box.wait_started()
             try:
@@ -445,6 +449,13 @@ TROUBLES: dict[str, Trouble] = {
         "camera 'b'",
         "camera 'b' is silent: it delivers no pictures .*",
         "check its cable",
+    ),
+    "a camera's lens is covered": Trouble(
+        running(_until_told("edge-b", "degraded"), edge=_EDGE, film=small_edge.write_black_film),
+        "camera 'b'",
+        "camera 'b' .*shows black pictures",
+        "take the cap off its lens",
+        "warning",
     ),
     "a camera falls behind": Trouble(
         running(_slow_for_a_while, {"edge-b": "slow"}, edge=_EDGE),

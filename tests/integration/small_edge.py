@@ -5,6 +5,7 @@
 
 import os
 import time
+from collections.abc import Iterable
 from fractions import Fraction
 from pathlib import Path
 
@@ -45,6 +46,16 @@ def main(context: ProcessContext) -> None:
 
 def write_film(path: Path) -> None:
     """Two seconds of a spot that walks."""
-    path.parent.mkdir(parents=True, exist_ok=True)
     places = (np.array((200.0 + 4 * k, 240.0)) for k in range(60))
-    write_motion_jpeg(path, (spot_picture(place, 12.0, SIZE_PX) for place in places), Fraction(30))
+    _write(path, (spot_picture(place, 12.0, SIZE_PX) for place in places))
+
+
+def write_black_film(path: Path) -> None:
+    """Two seconds of a covered lens, with a sensor's noise."""
+    random = np.random.default_rng(1)
+    _write(path, (random.integers(0, 12, (SIZE_PX[1], SIZE_PX[0], 3)).astype(np.uint8) for _ in range(60)))
+
+
+def _write(path: Path, pictures: Iterable[UInt8]) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_motion_jpeg(path, pictures, Fraction(30))

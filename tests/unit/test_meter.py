@@ -97,3 +97,18 @@ def test_a_camera_of_one_picture_a_second_is_not_silent_between_them() -> None:
         counted.grabbed(k * SECOND_NS, k * SECOND_NS, 1)
     counted.in_vain(2 * SECOND_NS + SECOND_NS * 9 // 10)
     assert counted.report(3 * SECOND_NS, 1.0, "thunder", "", USED).state == "ok"
+
+
+def test_a_covered_lens_is_said_and_one_bright_picture_in_the_second_denies_it() -> None:
+    counted = meter()
+    for bright in (11.0, None, 9.0):
+        counted.saw(bright)
+    covered = counted.report(SECOND_NS, 10.0, "thunder", "", USED)
+    assert (covered.state, covered.reason) == (
+        "degraded",
+        "camera 'cam01' shows black pictures; is its lens covered, or the light off?",
+    )
+    for bright in (9.0, 61.0, 9.0):
+        counted.saw(bright)
+    assert counted.report(2 * SECOND_NS, 10.0, "thunder", "", USED).state == "ok"
+    assert counted.report(3 * SECOND_NS, 10.0, "thunder", "", USED).state == "ok", "nothing was looked at: nothing is known"

@@ -133,3 +133,13 @@ def test_the_detector_sees_large_pictures_reduced_and_its_boxes_are_scaled_back(
     (person,) = run.see(large).persons
     assert run.detector.shapes == [(480, 640, 3)]
     assert (person.crop.centre_x_px, person.crop.centre_y_px) == pytest.approx((700, 500), abs=2)
+
+
+def test_how_bright_a_picture_is_comes_from_its_brightest_places_and_not_from_a_hot_pixel() -> None:
+    hot = plain_picture(0, SIZE_PX)
+    hot[120, 160] = 255
+    for video, low, high in ((dark(), 0.0, 2.0), (video_of([hot]), 0.0, 20.0), (spot_at(150, 110), 100.0, 255.0)):
+        run = Run()
+        run.see(video)
+        assert run.state.bright is not None
+        assert low <= run.state.bright <= high
