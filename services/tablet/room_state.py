@@ -171,7 +171,8 @@ class RoomState:
     def _process(self, heard: HeardHealth, now_ns: int) -> ProcessStatus:
         health, age_ns = heard.health, now_ns - heard.arrived_ns
         state: ProcessState = health.state
-        if self._gone(health.process):
+        # One that was given up is gone too, but that it does not come back is what a person must know.
+        if self._gone(health.process) and state != "failed":
             state = "gone"
         elif age_ns > SILENT_AFTER_NS:
             state = "silent"

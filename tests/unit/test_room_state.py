@@ -193,6 +193,16 @@ def test_failures_that_the_supervisor_reports_are_passed_on() -> None:
     assert (process.name, process.state, process.reason) == ("supervisor", "failed", "edge-a was given up after 5 restarts")
 
 
+def test_a_process_that_was_given_up_is_failed_and_not_only_gone() -> None:
+    state = room()
+    state.set_alive("edge-a", True, T0)
+    state.receive_health(health(), T0)
+    state.set_alive("edge-a", False, T0 + 1)
+    assert state.status(T0 + 2, 0).processes[0].state == "gone"
+    state.receive_health(Health("edge-a", 9, T0, "failed", "ended 6 times", 0.0, 0.0), T0 + 3)
+    assert state.status(T0 + 4, 0).processes[0].state == "failed"
+
+
 def test_a_new_epoch_is_passed_on() -> None:
     state = room()
     state.receive_motion(motion(T0, epoch=4), T0)

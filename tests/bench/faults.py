@@ -1,0 +1,157 @@
+"""Fault drills in a running box: how soon the figure is back, what the box says meanwhile, what of the recording is lost.
+
+One box serves all runs and records them in one lesson; between two drills it may settle. The figure is what a client of the page's
+socket gets. It is away when more than half of the joints have not been seen for longer than 0.5 s (the looping footage's seams take
+up to 0.4 s); `recovery_s` is from the fault until it is back for good, 0 if it never was away. `lost_s` is what the recording lacks
+of the time in which there was a figure. `said_s` is how soon the page's socket told of the fault, or was cut. Of the last box's
+runs stands how much its memory grew from the first round to the last, and whatever it left behind.
+"""
+
+import argparse
+import statistics
+import tempfile
+import threading
+import time
+from collections import defaultdict
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+
+import psutil
+from rich.console import Console
+from rich.table import Table
+
+from services.bus.zenoh_bus import open_client
+from services.lesson.lesson_reader import open_lesson
+from tests.bench.report import Report
+from tests.faults.box import ISOLATED, Box, may_mount, running
+from tests.faults.client import Client
+from tests.faults.drills import DRILLS, Outcome, Stage, faults_of_site, may_set_clock
+from tests.faults.traces import Before, left_behind
+
+RECOVERY_BAR_S = 3.0
+LOST_BAR_S = 1.0
+NEVER_SAID = {"slow-tablet", "clock-step", "full-disk"}
+"""Nothing is wrong with the figure then, or only the recorder has something to say of it."""
+
+
+def play(names: Sequence[str], runs: int, data: Path) -> tuple[list[Outcome], list[str], float]:
+    """All drills, so many times each; the outcomes, what was left behind, and the growth of memory in percent."""
+    with tempfile.TemporaryDirectory(prefix="drills-") as folder:
+        before, processes = Before.look(), list[psutil.Process]()
+        with running(Path(folder), data, ISOLATED + faults_of_site(), disk="full-disk" in names) as box:
+            outcomes = _play_in(box, names, runs, processes)
+            _note_losses(box, outcomes)
+            processes += box.descendants()
+        left = left_behind(box, processes, before)
+    return outcomes, left, _growth_pct([outcome.rss_mb for outcome in outcomes], len(names))
+
+
+def _play_in(box: Box, names: Sequence[str], runs: int, processes: list[psutil.Process]) -> list[Outcome]:
+    outcomes = []
+    bus = open_client(box.endpoint, threading.Event())
+    assert bus is not None
+    with Client(box.port) as client:
+        stage = Stage(box, client, bus)
+        client.wait_figure(time.monotonic())
+        stage.record("start")
+        for run in range(runs):
+            for name in names:
+                processes += box.descendants()
+                if name == "full-disk":  # which may cost the file that is being written
+                    stage.record("stop")
+                    stage.record("start")
+                outcome = DRILLS[name](stage)
+                outcomes.append(outcome)
+                if not client.status()["recording"]:  # the disk was full, which ends a lesson
+                    stage.record("start")
+                said = "never" if outcome.said_s is None else f"{outcome.said_s:.2f}"
+                print(f"{run + 1:3} {name:16} recovery {outcome.recovery_s:5.2f} s, pause {outcome.pause_s:4.2f} s, said {said} s")
+        stage.record("stop")
+    bus.close()
+    return outcomes
+
+
+def _note_losses(box: Box, outcomes: list[Outcome]) -> None:
+    """Fill in what the lesson lacks: the longest time without a tick of fusion's after each fault, less the figure's absence."""
+    ticks_s: list[float] = []
+    for path in sorted(box.data.rglob("*.mcap")):
+        with open_lesson(path) as lesson:
+            ticks_s += [entry.t_ns * 1e-9 for part in lesson.parts() for entry in part.entries if entry.kind == "tick"]
+    ticks_s.sort()
+    for outcome, next_s in zip(outcomes, [*(each.fault_s for each in outcomes[1:]), float("inf")], strict=True):
+        around = [at for at in ticks_s if outcome.fault_s - 1.5 < at < next_s]
+        if around and outcome.drill != "full-disk":
+            longest_s = max(later - earlier for earlier, later in pairwise(around))
+            outcome.lost_s = max(longest_s - max(outcome.pause_s, 1 / 30), 0.0)
+
+
+def _growth_pct(rss_mb: Sequence[float], drills: int) -> float:
+    """Memory after the last round over that after the second: in the first the spares are still being made."""
+    rounds = [statistics.mean(rss_mb[i : i + drills]) for i in range(0, len(rss_mb), drills)]
+    return 100 * (rounds[-1] / rounds[1] - 1) if len(rounds) > 2 else float("nan")
+
+
+def table(outcomes: Sequence[Outcome]) -> Table:
+    """A row a drill."""
+    shown = Table(title="fault drills")
+    for column in ("drill", "runs", "recovery median", "max", "pause max", "said max", "never said", "lost max"):
+        shown.add_column(column, justify="left" if column == "drill" else "right")
+    for name, runs in _by_drill(outcomes).items():
+        recoveries = [run.recovery_s for run in runs]
+        said = [run.said_s for run in runs if run.said_s is not None]
+        lost = [run.lost_s for run in runs if run.lost_s is not None]
+        shown.add_row(
+            name,
+            str(len(runs)),
+            f"{statistics.median(recoveries):.2f}",
+            f"{max(recoveries):.2f}",
+            f"{max(run.pause_s for run in runs):.2f}",
+            f"{max(said):.2f}" if said else "",
+            str(len(runs) - len(said)) if name not in NEVER_SAID else "",
+            f"{max(lost):.2f}" if lost else "",
+        )
+    return shown
+
+
+def _by_drill(outcomes: Sequence[Outcome]) -> dict[str, list[Outcome]]:
+    drills: dict[str, list[Outcome]] = defaultdict(list)
+    for outcome in outcomes:
+        drills[outcome.drill].append(outcome)
+    return drills
+
+
+def main() -> None:
+    """Measure, print, write."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, required=True)
+    parser.add_argument("--runs", type=int, default=20)
+    parser.add_argument("--drills", nargs="+", choices=sorted(DRILLS), default=list(DRILLS), metavar="DRILL")
+    arguments = parser.parse_args()
+    names = [name for name in DRILLS if name in arguments.drills]
+    with tempfile.TemporaryDirectory() as folder:
+        for name, allowed in (("full-disk", may_mount(Path(folder))), ("clock-step", may_set_clock())):
+            if name in names and not allowed:
+                names.remove(name)
+                print(f"{name} is left out: it needs rights that this process has not")
+    outcomes, left, growth_pct = play(names, arguments.runs, arguments.data)
+    report = Report("bench-faults")
+    bars: dict[str, tuple[str, float]] = {}
+    for name, runs in _by_drill(outcomes).items():
+        report.add(
+            {f"{name}.recovery_s.max": max(run.recovery_s for run in runs), f"{name}.pause_s.max": max(run.pause_s for run in runs)}
+        )
+        report.add({f"{name}.lost_s.max": max((run.lost_s for run in runs if run.lost_s is not None), default=float("nan"))})
+        report.add({f"{name}.said_s.max": max((run.said_s for run in runs if run.said_s is not None), default=float("nan"))})
+        bars |= {f"{name}.recovery_s.max": ("<=", RECOVERY_BAR_S), f"{name}.lost_s.max": ("<=", LOST_BAR_S)}
+        bars |= {} if name in NEVER_SAID else {f"{name}.said_s.max": ("<=", RECOVERY_BAR_S)}
+    report.add({"rss_growth_pct": growth_pct, "left_behind": len(left), "runs": arguments.runs})
+    report.rows = [vars(outcome) for outcome in outcomes]
+    Console(width=110).print(table(outcomes))
+    report.show(bars)
+    print("left behind: " + (", ".join(left) or "nothing"))
+    print(f"written to {report.write(arguments.data)}")
+
+
+if __name__ == "__main__":
+    main()
