@@ -23,12 +23,14 @@ def inspect(site: Site | None, rig: Rig | None, data: Path) -> list[Inspected]:
     """Look at all networks, and at the files of a site's cameras.
 
     Args:
-        site: the site file; None looks at the networks alone.
+        site: the site file; None looks at the networks and the built-in footage.
         rig: calibration of its cameras; None compares no sizes.
         data: the data folder.
     """
     found = list(_networks(data))
-    if site is not None:
+    if site is None:
+        found += _footage(data)
+    else:
         videos: dict[str, tuple[VideoShape, float]] = {}
         found += [_camera(camera, rig, data, videos) for camera in site.cameras]
         found += _lengths(videos)
@@ -46,6 +48,15 @@ def _networks(data: Path) -> Iterator[Inspected]:
     for name in sorted({*NETWORKS, *listed}):
         look = partial(read_network_file, name, data)
         yield _inspected(f"network {name}", "comparing its hash with the installation's", look)
+
+
+def _footage(data: Path) -> Iterator[Inspected]:
+    """The films that the set-up has prepared, whichever site plays them."""
+    for file in sorted(data.glob(f"footage*/{INDEX_NAME}")):
+        index = Index.read(file.parent)
+        harmed = [INDEX_NAME] if index is None else index.damaged(file.parent)
+        fault = f"{file.parent / harmed[0]} is missing or damaged; delete {file} and run `make footage`" if harmed else ""
+        yield Inspected(file.parent.name, "comparing the hashes of its files with the installation's", fault)
 
 
 def _camera(camera: CameraConfig, rig: Rig | None, data: Path, videos: dict[str, tuple[VideoShape, float]]) -> Inspected:

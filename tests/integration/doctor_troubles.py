@@ -69,6 +69,13 @@ def broken(break_it: Callable[[House], object]) -> Stage:
     return stage
 
 
+@contextmanager
+def footage_without_a_site(folder: Path) -> Iterator[Examined]:
+    house = build_house(folder)
+    _flip_byte(house.videos / "a.avi")
+    yield examined(house, site=None)
+
+
 def measured(**sensors: object) -> Stage:
     """A machine that measures something else than this one."""
 
@@ -355,6 +362,9 @@ TROUBLES: dict[str, Trouble] = {
     ),
     "a camera's file is missing": Trouble(
         broken(lambda house: (house.videos / "b.avi").unlink()), "camera 'b'", r"b\.avi is missing", "correct `path`"
+    ),
+    "the built-in footage is damaged": Trouble(
+        footage_without_a_site, "footage", r"a\.avi is missing or damaged", "run `make footage`"
     ),
     "the data folder cannot be read": Trouble(broken(_loop), "data folder", "cannot be used: Too many levels", "correct --data"),
     "the data folder is a file": Trouble(broken(_file_for_folder), "data folder", "is no folder", "correct --data"),
