@@ -4,6 +4,9 @@ from typing import Literal
 
 import msgspec
 
+GETTING_READY = "getting ready: the first start after an update compiles for some minutes"
+"""The reason of a process whose loop has yet to begin. Until another word comes, it is starting, and not to be taken for hung."""
+
 
 class CameraHealth(msgspec.Struct, frozen=True):
     """What an edge process measured over the last second.

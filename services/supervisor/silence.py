@@ -32,6 +32,10 @@ class Silence:
         self.forget(name)
         self._started_s[name] = now_s
 
+    def get_ready(self, name: str, now_s: float) -> None:
+        """A process said that it is still getting ready: it has as much time again as at its start."""
+        self._started_s[name] = now_s
+
     def forget(self, name: str) -> None:
         """A process ended, or it was decided that it shall."""
         self._started_s.pop(name, None)

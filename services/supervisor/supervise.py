@@ -13,7 +13,7 @@ from threading import Event
 
 from models.config.site import Site
 from models.errors import USER_ERROR_CODE, UserError
-from models.messages.health import SupervisorHealth
+from models.messages.health import GETTING_READY, SupervisorHealth
 from models.process import EDGE, RECORDER, REPLAY, ROUTER, Check, Playback
 from services.logs.files import STARTED, log_folder
 from services.supervisor import page
@@ -185,12 +185,18 @@ class Supervisor:
             # What an earlier process of that name said, or we on its behalf, is no sign of life.
             if post is None or post.child is None or post.child.pid != health.pid:
                 continue
-            self._silence.hear(post.name, now_s)
-            if post.trouble:
-                post.trouble = ""
-                self._journal.say(f"{post.name} runs again")
+            if health.reason == GETTING_READY:
+                self._silence.get_ready(post.name, now_s)
+            else:
+                self._runs(post, now_s)
             if post.reports(health.state, now_s):
                 self._journal.say(f"{post.name} is {health.state}{': ' if health.reason else ''}{health.reason}")
+
+    def _runs(self, post: Post, now_s: float) -> None:
+        self._silence.hear(post.name, now_s)
+        if post.trouble:
+            post.trouble = ""
+            self._journal.say(f"{post.name} runs again")
 
     def _kill_hung(self, now_s: float) -> None:
         for name in self._silence.hung(now_s):

@@ -9,13 +9,13 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from models.messages.health import GETTING_READY
 from models.process import Bus
 from services.support.health import PERIOD_S, HealthReporter, ResourceMeter
 
 QUIET_S = 3.0
 """A usual start is over by then, and needs no words."""
 LONGEST_S = 600.0
-REASON = "getting ready: the first start after an update compiles for some minutes"
 
 
 @contextmanager
@@ -35,7 +35,7 @@ def getting_ready(process: str, bus: Bus, quiet_s: float = QUIET_S, longest_s: f
         if ready.wait(quiet_s):
             return
         for _ in range(round(longest_s / PERIOD_S)):
-            reporter.report("degraded", REASON)
+            reporter.report("degraded", GETTING_READY)
             if ready.wait(PERIOD_S):
                 return
 

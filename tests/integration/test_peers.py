@@ -21,6 +21,8 @@ FRAMES = 24
 INNER = slice(8, -8)
 """Away from the ends, where filters have less to go by; Pose2Sim's drop the last frame altogether."""
 TOLERANCE_MM = 1.0
+BENDS_MM = {"pose2sim.butterworth_on_speed": 10.0, "aniposelib.optim_library": 10.0}
+"""The former is documented to offset what it filters, the latter penalises speed itself."""
 EVERYTHING = list(range(coco.COUNT))
 
 
@@ -56,7 +58,7 @@ def test_pose2sim_reproduces_a_perfect_scene_in_our_axes_and_units(tmp_path: Pat
     (walked, *_), glided = run_pose2sim(tmp_path, [walk, glide])
     assert worst_mm(walked, walk_m, list(JOINTS)) < TOLERANCE_MM
     for answer in glided:
-        assert worst_mm(answer, glide_m, list(JOINTS)) < TOLERANCE_MM, answer.method
+        assert worst_mm(answer, glide_m, list(JOINTS)) < BENDS_MM.get(answer.method, TOLERANCE_MM), answer.method
         assert answer.cpu_ms > 0
         assert answer.wall_ms > 0
 
@@ -68,7 +70,7 @@ def test_aniposelib_reproduces_a_perfect_scene_in_every_setting(tmp_path: Path) 
     for answer in (plain, ransac):
         assert worst_mm(answer, walk_m, EVERYTHING) < TOLERANCE_MM, answer.method
     for answer in glided:
-        assert worst_mm(answer, glide_m, EVERYTHING) < TOLERANCE_MM, answer.method
+        assert worst_mm(answer, glide_m, EVERYTHING) < BENDS_MM.get(answer.method, TOLERANCE_MM), answer.method
 
 
 def test_what_the_network_doubts_is_withheld_from_aniposelib(tmp_path: Path) -> None:
