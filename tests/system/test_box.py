@@ -62,13 +62,13 @@ class Box:
 
 
 @contextmanager
-def running(folder: Path) -> Iterator[Box]:
+def running(folder: Path, more_site: str = "") -> Iterator[Box]:
     data = require_footage()
     require_networks()
     port = free_port()
     (folder / "rig.toml").write_bytes((SHIPPED / "rig.toml").read_bytes())
     more = f'\n[bus]\nendpoint = "tcp/127.0.0.1:{free_port()}"\n[tablet]\nhost = "127.0.0.1"\nport = {port}\n'
-    (folder / "site.toml").write_text((SHIPPED / "site.toml").read_text() + more)
+    (folder / "site.toml").write_text((SHIPPED / "site.toml").read_text() + more + more_site)
     command = [sys.executable, "-m", "services.cli.main", "run", "--site", str(folder / "site.toml"), "--data", str(data)]
     with (folder / "output").open("wb") as output:
         process = subprocess.Popen(command, cwd=ROOT, stdout=output, stderr=output)
