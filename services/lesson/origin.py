@@ -12,7 +12,7 @@ from pathlib import Path
 
 _LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")
 _ROOT = Path(__file__).parents[2]
-_CODE = ("models/camera", "models/messages", "models/skeleton", "services/fusion")
+_CODE = ("models/*.py", "models/camera/*.py", "models/messages/*.py", "models/skeleton/*.py", "services/fusion/*.py")
 _SEPARATOR = "; "
 _CPUINFO = Path("/proc/cpuinfo")
 
@@ -51,7 +51,7 @@ def _processor(cpuinfo: Path) -> str:
 def _code(root: Path) -> str:
     """Check sum of the sources that fusion consists of."""
     total = hashlib.sha256()
-    for folder in _CODE:
-        for file in sorted((root / folder).rglob("*.py")):
+    for pattern in _CODE:
+        for file in sorted(root.glob(pattern)):
             total.update(f"{file.relative_to(root)}\0".encode() + file.read_bytes() + b"\0")
     return total.hexdigest()[:8]

@@ -1,4 +1,4 @@
-"""The built-in footage, seen by the real networks, recorded and replayed: equal to the last bit, in another process too."""
+"""The built-in footages, seen by the real networks, recorded and replayed: equal to the last bit, in another process too."""
 
 import hashlib
 import subprocess
@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from edge.footage.sets import FOOTAGES, Footage
 from models.camera.rig import decode_rig
 from models.messages import codec
 from models.messages.motion import Motion
@@ -24,14 +25,15 @@ from tests.synthetic.lesson_log import entries, parts
 pytestmark = [pytest.mark.slow, pytest.mark.footage, pytest.mark.networks, pytest.mark.timeout(300)]
 
 LIVE_RATE_HZ = 10.0
-RIG = ROOT / "deploy/sites/footage/rig.toml"
 
 
-def test_the_built_in_footage_replays_as_it_was_fused(tmp_path: Path) -> None:
-    data = require_footage()
+@pytest.mark.parametrize("footage", FOOTAGES.values(), ids=lambda footage: footage.name)
+def test_a_built_in_footage_replays_as_it_was_fused(tmp_path: Path, footage: Footage) -> None:
+    data = require_footage(footage)
     require_networks()
-    rig = decode_rig(RIG.read_bytes(), str(RIG))
-    events = look(rig, load_videos(rig, data), data, LIVE_RATE_HZ, network="lightning")
+    calibration = ROOT / "deploy/sites" / footage.name / "rig.toml"
+    rig = decode_rig(calibration.read_bytes(), str(calibration))
+    events = look(rig, load_videos(rig, data, footage), data, LIVE_RATE_HZ, network="lightning")
 
     # Fused here and now, without wire and file between.
     state, total, motions = initial_state(rig), hashlib.sha256(), 0
@@ -43,7 +45,7 @@ def test_the_built_in_footage_replays_as_it_was_fused(tmp_path: Path) -> None:
             total.update(codec.encode(stamped))
     fused = f"{motions} {total.hexdigest()}"
 
-    writer = LessonWriter.create(tmp_path, "footage", gym_header(Gym(rig=rig), title="Built-in footage"))
+    writer = LessonWriter.create(tmp_path, "footage", gym_header(Gym(rig=rig), title=footage.name))
     for part in parts(entries(events, rig), START_NS):
         writer.append(part)
     file = writer.finish()
