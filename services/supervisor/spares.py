@@ -35,7 +35,10 @@ class Spares:
     def take(self, name: str) -> Child | None:
         """The spare of a post, told to begin; None if there is none. One that is not ready yet begins when it is."""
         spare = self._waiting.pop(name, None)
-        if spare is None or spare.poll() is not None:
+        if spare is None:
+            return None
+        if spare.poll() is not None:
+            spare.close()
             return None
         spare.begin()
         return spare
