@@ -12,7 +12,7 @@ from typing import Final
 
 from models.messages.control import PoseNetwork
 from models.messages.health import CameraHealth
-from services.fusion.inference_cost import InferenceCost
+from services.fusion.inference_cost import InferenceCost, believable
 
 
 @dataclass(frozen=True)
@@ -107,6 +107,7 @@ def step(state: GovernorState, load: Load, t_ns: int, max_rate_hz: float, cpu_ta
         max_rate_hz: rungs above this rate are never taken.
         cpu_target: share of `granted_cores` that may be filled.
     """
+    load = replace(load, cameras=[camera for camera in load.cameras if believable(camera)])
     if state.started_ns is None:
         state = replace(state, started_ns=t_ns, level=_found_in_force(load.cameras))
     best = next(index for index, level in enumerate(LADDER) if level.rate_hz <= max_rate_hz)

@@ -19,6 +19,16 @@ _FADES: Final = 0.02
 """Share of the distance, each second, by which what does not run nears what is expected."""
 
 
+_MOST: Final = 1e6
+"""No rate in Hz and no time in ms is larger."""
+
+
+def believable(camera: CameraHealth) -> bool:
+    """Whether a camera can have measured that. One figure that is none would stay in every average for ever."""
+    figures = (camera.source_hz, camera.fresh_hz, camera.target_hz, *camera.stage_ms.values())
+    return camera.network in RELATIVE_POSE_COST and all(0 <= figure <= _MOST for figure in figures)
+
+
 @dataclass(frozen=True)
 class InferenceCost:
     """CPU milliseconds of one inference.

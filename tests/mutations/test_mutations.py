@@ -37,13 +37,11 @@ from tests.mutations.mutate import mutants
 from tests.mutations.samples import JOINTS_M, RIG, by_topic, control, healths, log, motion, observation
 
 COUNTS = [
-    pytest.param(2_000, marks=pytest.mark.slow),
+    pytest.param(2_000, marks=[pytest.mark.slow, pytest.mark.timeout(300)]),
     pytest.param(100_000, marks=[pytest.mark.mutations, pytest.mark.slow, pytest.mark.timeout(1800)]),
 ]
 GROWTH_MB = 40.0
 """Far less than a hundred thousand messages of 3 KB would take if they were kept."""
-
-pytestmark = pytest.mark.timeout(300)
 
 
 def deliveries(topic: str, count: int, growth: Growth, seed: int = 1) -> Iterator[Delivery]:

@@ -3,6 +3,7 @@
 import itertools
 from dataclasses import dataclass
 
+import msgspec
 import pytest
 
 from models.messages.health import CameraHealth
@@ -155,3 +156,23 @@ def test_a_fusion_that_takes_over_goes_on_with_the_plan_that_is_in_force() -> No
 def test_cameras_with_a_plan_of_no_rung_make_a_start_as_always() -> None:
     odd = CameraHealth("cam", 30.0, 3.0, 3.0, 0, 5.0, "thunder", {})
     assert governor.step(GovernorState(), Load(2.0, 1.9, [odd] * 4), 10**9, 30.0, 0.85).level == governor.START
+
+
+@pytest.mark.parametrize(
+    "nonsense",
+    [
+        {"network": "\x00"},
+        {"fresh_hz": float("nan")},
+        {"source_hz": float("-inf")},
+        {"stage_ms": {"pose": float("nan")}},
+        {"stage_ms": {"pose": -5.0}},
+        {"stage_ms": {"pose": 24.0, "x": 1e308, "y": 1e308}},
+    ],
+)
+def test_what_no_camera_can_have_measured_changes_nothing(nonsense: dict[str, object]) -> None:
+    box = Box(4.0)
+    state = run(box, 40)[-1]
+    load = box.second(state)
+    mad = msgspec.structs.replace(load.cameras[0], **nonsense)
+    after = governor.step(state, Load(load.granted_cores, load.used_cores, [*load.cameras, mad]), 41 * 10**9, 30.0, 0.85)
+    assert after == governor.step(state, load, 41 * 10**9, 30.0, 0.85)
