@@ -129,6 +129,7 @@ def running(tmp_path: Path, make_source: Callable[[ProcessContext], VideoSource]
         assert not thread.is_alive(), "the loop did not honour stop"
 
 
+@pytest.mark.slow
 def test_before_any_plan_the_camera_is_looked_at_ten_times_a_second_of_its_own_time(tmp_path: Path) -> None:
     with running(tmp_path) as box:
         seen = [box.next_observation() for _ in range(8)]
@@ -140,6 +141,7 @@ def test_before_any_plan_the_camera_is_looked_at_ten_times_a_second_of_its_own_t
     assert any(observation.persons for observation in seen)
 
 
+@pytest.mark.slow
 def test_loops_are_epochs_and_frames_are_stamped_by_the_shared_start(tmp_path: Path) -> None:
     with running(tmp_path, lambda context: played(context, passes=1)) as box:
         box.plan(30.0)
@@ -205,6 +207,7 @@ def test_a_plan_changes_the_rate_and_an_idle_one_stops_the_networks(tmp_path: Pa
     assert idle.source_hz > 0
 
 
+@pytest.mark.slow
 def test_a_plan_for_another_network_is_followed_without_a_gap(tmp_path: Path) -> None:
     with running(tmp_path) as box:
         box.next_observation()

@@ -121,6 +121,7 @@ def test_pictures_become_the_pupil_where_he_stands(tmp_path: Path) -> None:
     assert motion.t_published_ns >= motion.t_ns
 
 
+@pytest.mark.slow
 def test_every_camera_is_told_where_to_look_and_takes_its_turn(tmp_path: Path) -> None:
     with running(tmp_path) as room:
         room.film_until_seen()
@@ -145,6 +146,7 @@ def test_every_camera_is_told_where_to_look_and_takes_its_turn(tmp_path: Path) -
         assert np.hypot(crop.centre_x_px - centre[0], crop.centre_y_px - centre[1]) < 0.5 * crop.side_px
 
 
+@pytest.mark.slow
 def test_without_pictures_nothing_is_known_and_nothing_is_claimed(tmp_path: Path) -> None:
     with running(tmp_path) as room:
         health, fusion = room.fusion_health()
@@ -153,6 +155,7 @@ def test_without_pictures_nothing_is_known_and_nothing_is_claimed(tmp_path: Path
     assert all(name in health.reason for name in RIG.names)
 
 
+@pytest.mark.slow
 def test_messages_that_cannot_be_read_are_counted_and_do_no_harm(tmp_path: Path) -> None:
     with running(tmp_path) as room:
         for payload in (b"", b"\x01", b"rubbish" * 100, bytes(100_000)):
@@ -164,6 +167,7 @@ def test_messages_that_cannot_be_read_are_counted_and_do_no_harm(tmp_path: Path)
         room.film_until_seen()
 
 
+@pytest.mark.slow
 def test_an_observation_in_another_cameras_name_is_refused(tmp_path: Path) -> None:
     with running(tmp_path) as room:
         room.film(camera_named="cam3")
@@ -171,6 +175,7 @@ def test_an_observation_in_another_cameras_name_is_refused(tmp_path: Path) -> No
     assert fusion.rejected == 3
 
 
+@pytest.mark.slow
 def test_a_camera_whose_pictures_are_not_fused_is_named(tmp_path: Path) -> None:
     with running(tmp_path) as room:
         room.film_until_seen()
@@ -201,6 +206,7 @@ def test_cameras_that_were_exchanged_are_named(tmp_path: Path) -> None:
         until(named, "cam0 and cam1 named as exchanged")
 
 
+@pytest.mark.slow
 def test_a_word_of_health_of_an_unknown_camera_takes_no_part_in_the_plan(tmp_path: Path) -> None:
     stranger = CameraHealth("elsewhere", 30.0, 1.0, 10.0, 0, 5.0, "thunder", {"pose": 900.0})
     health = Health("edge-elsewhere", 1, time.monotonic_ns(), "ok", "", 0.1, 1.0, camera=stranger)
@@ -253,6 +259,7 @@ def replayed(entries: list[Entry]) -> tuple[list[bytes], list[bytes]]:
     return logged, again
 
 
+@pytest.mark.slow
 def test_the_log_of_a_segment_gives_the_same_motion_again_to_the_last_bit(tmp_path: Path) -> None:
     with running(tmp_path) as room:
         room.film_until_seen()
@@ -263,6 +270,7 @@ def test_the_log_of_a_segment_gives_the_same_motion_again_to_the_last_bit(tmp_pa
     assert (codec.decode(logged[-1], Motion).states == JointState.SEEN).all()
 
 
+@pytest.mark.slow
 def test_a_later_request_begins_a_segment_that_replays_by_itself(tmp_path: Path) -> None:
     with running(tmp_path) as room:
         first, second = log_a_segment(room, smooth=20), log_a_segment(room, smooth=20)
@@ -272,6 +280,7 @@ def test_a_later_request_begins_a_segment_that_replays_by_itself(tmp_path: Path)
         assert logged == again
 
 
+@pytest.mark.slow
 def test_health_that_fusion_heard_is_in_its_log(tmp_path: Path) -> None:
     with running(tmp_path) as room:
         parts = log_a_segment(room, smooth=40)

@@ -99,6 +99,7 @@ def test_a_client_learns_of_the_room_and_then_sees_it_move(room: Room) -> None:
         assert next_motion(client).sequence > first.sequence
 
 
+@pytest.mark.slow
 def test_a_client_that_does_not_answer_gets_two_frames_and_then_the_newest(room: Room) -> None:
     with join(room) as client, join(room) as quick:
         stalled = [next_motion(client), next_motion(client)]
@@ -110,6 +111,7 @@ def test_a_client_that_does_not_answer_gets_two_frames_and_then_the_newest(room:
         assert next_motion(client).sequence >= newest.sequence > stalled[-1].sequence + 20
 
 
+@pytest.mark.slow
 def test_statuses_wait_for_an_answer_too(room: Room) -> None:
     with join(room) as client:
         first = next_json(client, "status")
@@ -175,6 +177,7 @@ def test_a_full_house_is_said_to_be_full(room: Room) -> None:
             late.recv(timeout=GENEROUS_S)
 
 
+@pytest.mark.slow
 def test_broken_bus_messages_are_counted_and_reported(room: Room) -> None:
     bus = room.join_bus()
     reports = bus.subscribe(topics.health("tablet"), keep=10)

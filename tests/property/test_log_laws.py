@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -21,6 +22,7 @@ from tests.log_lines import NOON, RECORDS, TEXTS, TIMES, VALUES, numbered, numbe
 DAMAGED = st.binary(max_size=30).map(lambda data: b"{" + data.replace(b"\n", b" "))
 
 
+@pytest.mark.slow
 @given(st.dictionaries(TEXTS | st.sampled_from(["time", "process", "level", "event", "exception"]), VALUES, max_size=30))
 def test_whatever_is_said_becomes_one_short_line_of_the_one_form(said: dict[str, Any]) -> None:
     line = encode(record_of(said, "fusion", NOON))

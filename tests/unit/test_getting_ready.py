@@ -20,6 +20,7 @@ from tests.installed import ROOT
 DEADLINE_S = 30.0
 
 
+@pytest.mark.slow
 def test_who_takes_long_says_so_again_and_again_and_then_is_silent() -> None:
     router = MemoryRouter()
     heard = router.open().subscribe(topics.health("fusion"), keep=10)
@@ -42,6 +43,7 @@ def test_a_usual_start_is_not_worth_a_word() -> None:
     assert heard.receive(0.1) is None
 
 
+@pytest.mark.slow
 def test_who_never_gets_ready_falls_silent_so_that_it_is_found_out() -> None:
     router = MemoryRouter()
     heard = router.open().subscribe(topics.health("fusion"), keep=10)
