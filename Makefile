@@ -27,7 +27,7 @@ run: setup ## Start KineBox on the built-in footage and print the address of the
 test: setup $(DATA)/footage/installed.json $(DATA)/footage2/installed.json ## Every test: unit, property, golden, real sockets and processes, the page in Chromium
 	@$(MAKE) --no-print-directory lint
 	cd $(WEB) && npm run --silent check && npm test
-	$(PYTHON) -m pytest
+	$(PYTHON) -m pytest -n 4 --dist loadfile # most tests wait, for processes and deadlines
 
 check: $(VENV)/.ready ## Formatting, types, import boundaries and the fast tests; under a minute
 	@$(MAKE) --no-print-directory lint
@@ -72,7 +72,7 @@ $(WEB)/dist/index.html: $(WEB)/node_modules/.ready $(WEB_SOURCES)
 	@touch $@
 
 kernels: $(DATA)/kernels/.ready ## Compile the numerical kernels, so that no live frame waits for it
-$(DATA)/kernels/.ready: $(wildcard services/fusion/*.py) | $(VENV)/.ready
+$(DATA)/kernels/.ready: models/compiled.py $(wildcard services/fusion/*.py) | $(VENV)/.ready
 	@mkdir -p $(@D)
 	@echo "Compiling numerical kernels ..."
 	@$(PYTHON) -c "from services.fusion.warm_up import warm_up; warm_up()"

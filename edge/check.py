@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from edge.cameras.shape import VideoShape, read_avi_shape, require_calibrated_size, require_equal_lengths
-from edge.footage.index import INDEX_NAME, Index
+from edge.footage.index import Index, remedy
 from edge.perception.network_file import read_network_file
 from models.camera.rig import Rig
 from models.config.site import Site
@@ -67,6 +67,5 @@ def _described(path: Path, camera: str) -> VideoShape | None:
         return None
     size, wanted = path.stat().st_size, index.files[path.name][0]
     if size != wanted:
-        remedy = f"delete {path.parent / INDEX_NAME} and run `make footage`"
-        raise UserError(f"camera '{camera}': {path} has {size} bytes instead of {wanted}; {remedy}")
+        raise UserError(f"camera '{camera}': {path} has {size} bytes instead of {wanted}; {remedy(path.parent)}")
     return read_avi_shape(path)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from edge.cameras.shape import VideoShape, require_calibrated_size, require_equal_lengths
 from edge.check import NETWORKS, check_video
-from edge.footage.index import INDEX_NAME, Index
+from edge.footage.index import INDEX_NAME, Index, remedy
 from edge.perception.network_file import read_network_file
 from models.camera.rig import Rig
 from models.config.site import CameraConfig, Site
@@ -55,7 +55,7 @@ def _footage(data: Path) -> Iterator[Inspected]:
     for file in sorted(data.glob(f"footage*/{INDEX_NAME}")):
         index = Index.read(file.parent)
         harmed = [INDEX_NAME] if index is None else index.damaged(file.parent)
-        fault = f"{file.parent / harmed[0]} is missing or damaged; delete {file} and run `make footage`" if harmed else ""
+        fault = f"{file.parent / harmed[0]} is missing or damaged; {remedy(file.parent)}" if harmed else ""
         yield Inspected(file.parent.name, "comparing the hashes of its files with the installation's", fault)
 
 
@@ -66,10 +66,7 @@ def _camera(camera: CameraConfig, rig: Rig | None, data: Path, videos: dict[str,
         videos[camera.name] = (shape := check_video(path, camera.name), camera.rate_hz)
         index = Index.read(path.parent)
         if index is not None and path.name in index.files and path.name in index.damaged(path.parent):
-            raise UserError(
-                f"camera '{camera.name}': {path} is damaged (not the hash installed); "
-                f"delete {path.parent / INDEX_NAME} and run `make footage`"
-            )
+            raise UserError(f"camera '{camera.name}': {path} is damaged (not the hash installed); {remedy(path.parent)}")
         if rig is not None and camera.name in rig.names:
             require_calibrated_size(camera.name, shape, rig.cameras[rig.index(camera.name)].size_px)
 

@@ -49,3 +49,8 @@ def _is_as(path: Path, size: int, digest: str) -> bool:
 def _sha256(path: Path) -> str:
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def remedy(folder: Path) -> str:
+    """What to do about prepared footage in `folder` that is harmed."""
+    return f"delete {folder / INDEX_NAME} and run `make footage SOURCE={folder.name}`"

@@ -12,9 +12,9 @@ from typing import Final
 import numpy as np
 
 from models.arrays import Bool, Float
+from models.compiled import Counts, compiled
 from models.skeleton import coco
 from services.fusion.candidates import PERSONS, Candidates
-from services.fusion.compiled import Counts, compiled
 from services.fusion.config import FusionConfig
 from services.fusion.joint_filter import Expectation
 from services.fusion.pairing import disagreements

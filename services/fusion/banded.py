@@ -7,7 +7,7 @@ joints. `matrix[i, d]` is the element at row i and column i + d; the factorisati
 import numpy as np
 
 from models.arrays import Float
-from services.fusion.compiled import Counts, compiled
+from models.compiled import Counts, compiled
 
 _LEAST_PIVOT = 1e-9
 

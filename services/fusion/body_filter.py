@@ -7,7 +7,7 @@ is the joints' filter with one joint, compiled.
 import numpy as np
 
 from models.arrays import Bool, Float
-from services.fusion.compiled import Counts, compiled
+from models.compiled import Counts, compiled
 from services.fusion.singer import advance_joints, update_joints
 
 _ACCELERATION_M_S2 = np.array([5.0])

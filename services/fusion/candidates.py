@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from services.fusion.compiled import Counts
+from models.compiled import Counts
 from services.fusion.timing import Tracks
 from services.fusion.views import Sighting
 

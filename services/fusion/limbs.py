@@ -5,8 +5,8 @@ from typing import Final
 import numpy as np
 
 from models.arrays import Bool, Float
+from models.compiled import Counts, compiled
 from models.skeleton import coco
-from services.fusion.compiled import Counts, compiled
 from services.fusion.config import SmoothingConfig
 
 ENDS: Final[Counts] = np.array(list(coco.LIMBS.values()), np.int64)

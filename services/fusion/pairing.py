@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from models.arrays import Float
-from services.fusion.compiled import Counts
+from models.compiled import Counts
 from services.fusion.config import TriangulationConfig
 from services.fusion.views import Sighting, Views
 

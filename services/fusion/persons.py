@@ -12,9 +12,9 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from models.arrays import Float
+from models.compiled import Counts
 from services.fusion.association import Hypothesis, PersonSearch, median_distances
 from services.fusion.candidates import Candidates
-from services.fusion.compiled import Counts
 from services.fusion.config import FusionConfig
 from services.fusion.joint_filter import Expectation
 from services.fusion.pupil import Pupil

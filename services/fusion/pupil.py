@@ -3,10 +3,10 @@
 import numpy as np
 
 from models.arrays import Bool, Float, UInt32
+from models.compiled import Counts
 from models.skeleton import coco
 from services.fusion.association import Familiar, agreement, pick_pupil
 from services.fusion.body_filter import BodyFilter, centre_in_picture
-from services.fusion.compiled import Counts
 from services.fusion.config import FusionConfig
 from services.fusion.history import FilterHistory, Seed
 from services.fusion.joint_filter import Expectation

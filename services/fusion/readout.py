@@ -3,7 +3,7 @@
 import numpy as np
 
 from models.arrays import Bool, Float, UInt32
-from services.fusion.compiled import Counts, compiled
+from models.compiled import Counts, compiled
 
 _INLIER2 = 9.21
 """Chi-square, 2 degrees of freedom, 99 %."""

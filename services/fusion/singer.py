@@ -7,7 +7,7 @@ transition is a 3 x 3 matrix times the identity of space, which the loops exploi
 import numpy as np
 
 from models.arrays import Bool, Float
-from services.fusion.compiled import compiled
+from models.compiled import compiled
 
 
 @compiled

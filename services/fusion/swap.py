@@ -10,8 +10,8 @@ from typing import Final
 import numpy as np
 
 from models.arrays import Bool, Float
+from models.compiled import compiled
 from models.skeleton import coco
-from services.fusion.compiled import compiled
 from services.fusion.joint_filter import Expectation
 from services.fusion.views import Sighting
 

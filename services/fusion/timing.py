@@ -7,8 +7,8 @@ observations around it, or carried a little beyond the newest; sigma grows with 
 import numpy as np
 
 from models.arrays import Bool, Float
+from models.compiled import Counts, compiled
 from models.skeleton import coco
-from services.fusion.compiled import Counts, compiled
 from services.fusion.config import TimingConfig
 from services.fusion.views import Sighting
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.arrays import Bool, Float, UInt32
-from services.fusion.compiled import compiled
+from models.compiled import compiled
 from services.fusion.config import TriangulationConfig
 from services.fusion.views import Views
 

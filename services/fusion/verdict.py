@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.arrays import Float, UInt8, UInt32
+from models.compiled import Counts, compiled
 from models.messages.motion import JointState
-from services.fusion.compiled import Counts, compiled
 
 _UNKNOWN, _GUESSED, _SEEN = (int(state) for state in (JointState.UNKNOWN, JointState.GUESSED, JointState.SEEN))
 _IMPOSSIBLE = 0.4

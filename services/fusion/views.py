@@ -6,8 +6,8 @@ import numpy as np
 
 from models.arrays import Bool, Float, Float32
 from models.camera.rig import Rig
+from models.compiled import compiled
 from models.messages.observation import Observation, Person
-from services.fusion.compiled import compiled
 from services.fusion.config import SightingConfig
 
 _UNDISTORT_ITERATIONS = 12

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from models.arrays import Bool, Float
-from services.fusion.compiled import Counts, compiled
+from models.compiled import Counts, compiled
 
 BAND: Final = 12
 """The diagonal and what is above it."""

@@ -355,16 +355,16 @@ TROUBLES: dict[str, Trouble] = {
         broken(lambda house: (house.videos / "b.avi").write_bytes((house.videos / "b.avi").read_bytes()[:-100])),
         "camera 'b'",
         r"b\.avi has \d+ bytes instead of \d+",
-        "run `make footage`",
+        "run `make footage SOURCE=footage`",
     ),
     "a camera's file has one wrong byte": Trouble(
-        broken(lambda house: _flip_byte(house.videos / "a.avi")), "camera 'a'", r"a\.avi is damaged", "run `make footage`"
+        broken(lambda house: _flip_byte(house.videos / "a.avi")), "camera 'a'", r"a\.avi is damaged", "run `make footage SOURCE=footage`"
     ),
     "a camera's file is missing": Trouble(
         broken(lambda house: (house.videos / "b.avi").unlink()), "camera 'b'", r"b\.avi is missing", "correct `path`"
     ),
     "the built-in footage is damaged": Trouble(
-        footage_without_a_site, "footage", r"a\.avi is missing or damaged", "run `make footage`"
+        footage_without_a_site, "footage", r"a\.avi is missing or damaged", "run `make footage SOURCE=footage`"
     ),
     "the data folder cannot be read": Trouble(broken(_loop), "data folder", "cannot be used: Too many levels", "correct --data"),
     "the data folder is a file": Trouble(broken(_file_for_folder), "data folder", "is no folder", "correct --data"),

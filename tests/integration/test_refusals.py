@@ -94,7 +94,7 @@ FAULTS: dict[str, tuple[Callable[[House], object], str]] = {
     "a video is missing": (lambda house: (house.videos / "b.avi").unlink(), r"camera 'b': .*b\.avi is missing; correct"),
     "a video is truncated": (
         lambda house: _truncate(house.videos / "b.avi"),
-        r"camera 'b': .*b\.avi has \d+ bytes instead of \d+; delete .*installed\.json and run `make footage`",
+        r"camera 'b': .*b\.avi has \d+ bytes instead of \d+; delete .*installed\.json and run `make footage SOURCE=footage`",
     ),
     "a video is none": (_undescribed_garbage, r"camera 'a': .*a\.avi is not a video that can be read .*copy or prepare it again"),
     "a video lasts longer than the others": (
