@@ -358,7 +358,10 @@ TROUBLES: dict[str, Trouble] = {
         "run `make footage SOURCE=footage`",
     ),
     "a camera's file has one wrong byte": Trouble(
-        broken(lambda house: _flip_byte(house.videos / "a.avi")), "camera 'a'", r"a\.avi is damaged", "run `make footage SOURCE=footage`"
+        broken(lambda house: _flip_byte(house.videos / "a.avi")),
+        "camera 'a'",
+        r"a\.avi is damaged",
+        "run `make footage SOURCE=footage`",
     ),
     "a camera's file is missing": Trouble(
         broken(lambda house: (house.videos / "b.avi").unlink()), "camera 'b'", r"b\.avi is missing", "correct `path`"
