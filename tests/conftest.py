@@ -2,6 +2,12 @@
 
 import signal
 
+from hypothesis import HealthCheck, settings
+
+# No test is timed: a machine that is busy, or that imports and compiles for the first time, breaks no law.
+settings.register_profile("kinebox", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("kinebox")
+
 # Whatever runs the tests (nohup, a shell's background job) may have left these ignored, which children inherit and keep to.
 for _number in (signal.SIGINT, signal.SIGHUP):
     if signal.getsignal(_number) is signal.SIG_IGN:
