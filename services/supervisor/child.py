@@ -12,10 +12,11 @@ from pathlib import Path
 import msgspec
 
 from models.errors import USER_ERROR_PREFIX
-from models.process import Playback, process_name
+from models.process import EDGE, Playback, process_name
 
-EDGE_NICENESS = 5
-"""Inference takes all the CPU that it is given; fusion and the page, which need little, shall not wait for it."""
+_NICENESS = {EDGE: 5, "recorder": 10}
+"""Inference takes all the CPU that it is given; fusion and the page, which need little, shall not wait for it. At the start nobody
+shall wait for the recorder, which has nothing to do yet."""
 _MODULE = "services.cli.child"
 _READ_BYTES = 65536
 _READS_AT_ONCE = 16
@@ -38,7 +39,7 @@ class ChildSpec:
     @property
     def niceness(self) -> int:
         """How far the process stands back when the CPU is short."""
-        return 0 if self.camera is None else EDGE_NICENESS
+        return _NICENESS.get(self.entry, 0)
 
     def command(self, site: Path, data: Path, start_ns: int, *, spare: bool = False) -> list[str]:
         """The command line of the process; it ends with the process that calls this. A `spare` waits for `Child.begin`."""
