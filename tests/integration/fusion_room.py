@@ -148,4 +148,5 @@ def fusion(room: Opens, data: Path) -> Iterator[Bus]:
     finally:
         stop.set()
         thread.join(DEADLINE_S)
+        assert not thread.is_alive(), "the loop did not honour stop"
         bus.close()

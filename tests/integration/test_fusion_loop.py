@@ -1,6 +1,5 @@
 """The fusion process's loop over the in-memory bus: what goes in, what must come out, and what must not stop it."""
 
-import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,24 +10,20 @@ import msgspec
 import numpy as np
 import pytest
 
-from models.config.site import SITE_VERSION, CameraConfig, Site
 from models.messages import codec, topics
 from models.messages.control import ViewControl
 from models.messages.health import CameraHealth, FusionHealth, Health
 from models.messages.lesson import Entry, FusionLog, SegmentRequest
 from models.messages.motion import JointState, Motion
 from models.messages.observation import Crop, Observation, Person
-from models.process import Bus, ProcessContext, Resources, Subscription
+from models.process import Bus, Subscription
 from services.bus.memory import MemoryRouter
 from services.fusion.config import PRESETS
 from services.fusion.pipeline import Tick, initial_state, step
-from services.fusion.process import FusionLoop
-from services.support.cpu import CpuMeter
+from tests.integration.fusion_room import RIG, fusion
 from tests.integration.waiting import DEADLINE_S, until
-from tests.synthetic.gym import ring_rig
 from tests.synthetic.person import Person as Pupil
 
-RIG = ring_rig(4)
 PUPIL = Pupil()
 
 
@@ -83,7 +78,7 @@ class Room:
 @contextmanager
 def running(tmp_path: Path) -> Iterator[Room]:
     router = MemoryRouter()
-    own, other = router.open(), router.open()
+    other = router.open()
     room = Room(
         bus=other,
         live=other.subscribe(topics.motion("live"), keep=1),
@@ -91,27 +86,8 @@ def running(tmp_path: Path) -> Iterator[Room]:
         controls=other.subscribe(*(topics.control(name) for name in RIG.names), keep=1),
         logs=other.subscribe(topics.fusion_log(), keep=1000),
     )
-    cameras = [CameraConfig(name=name, kind="video", path="none.avi") for name in RIG.names]
-    stop = threading.Event()
-    context = ProcessContext(
-        name="fusion",
-        camera=None,
-        site=Site(version=SITE_VERSION, name="test", calibration="rig.toml", cameras=cameras),
-        rig=RIG,
-        data=tmp_path,
-        start_ns=time.monotonic_ns(),
-        bus=own,
-        stop=stop,
-        resources=lambda: Resources(0.1, 100.0),
-    )
-    thread = threading.Thread(target=FusionLoop(context, CpuMeter()).run, daemon=True)
-    thread.start()
-    try:
+    with fusion(router, tmp_path):
         yield room
-    finally:
-        stop.set()
-        thread.join(DEADLINE_S)
-        assert not thread.is_alive(), "the loop did not honour stop"
 
 
 def test_pictures_become_the_pupil_where_he_stands(tmp_path: Path) -> None:
