@@ -48,6 +48,11 @@ def alive(process: str) -> str:
     return f"{ROOM}/alive/{process}"
 
 
+def process_of(topic: str) -> str:
+    """The process that a topic of health, beats or liveliness is of."""
+    return topic.rsplit("/", 1)[-1]
+
+
 ALL_HEALTH = f"{ROOM}/health/*"
 ALL_BEATS = f"{ROOM}/beat/*"
 ALL_ALIVE = f"{ROOM}/alive/*"

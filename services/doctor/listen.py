@@ -67,7 +67,7 @@ class Heard:
 
     def note(self, topic: str, alive: bool) -> None:
         """A process joined or left the bus."""
-        (self.alive.add if alive else self.alive.discard)(topic.rsplit("/", 1)[-1])
+        (self.alive.add if alive else self.alive.discard)(topics.process_of(topic))
 
 
 def listen(site: Site, expected: frozenset[str]) -> Heard:

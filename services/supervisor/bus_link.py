@@ -32,6 +32,8 @@ class BusLink:
     """
 
     def __init__(self, endpoint: str) -> None:
+        self.present: set[str] = set()
+        """The processes that are at work: got ready, and on the bus."""
         self._endpoint = endpoint
         self._stop = threading.Event()
         self._bus: Bus | None = None
@@ -51,7 +53,7 @@ class BusLink:
         while self._beats is not None and (delivery := self._beats.receive(0.0)) is not None:
             pid = beating_pid(delivery.payload)
             if pid is not None:
-                found.append((delivery.topic.rsplit("/", 1)[-1], pid))
+                found.append((topics.process_of(delivery.topic), pid))
         return found
 
     def say(
@@ -90,6 +92,10 @@ class BusLink:
             return
         self._subscription = bus.subscribe(topics.ALL_HEALTH, keep=_KEEP)
         self._beats = bus.subscribe(topics.ALL_BEATS, keep=1)
+        bus.watch_alive(topics.ALL_ALIVE, self._seen)
         bus.declare_alive(topics.alive(NAME))
         self._reporter = HealthReporter(NAME, bus, ResourceMeter())
         self._bus = bus
+
+    def _seen(self, topic: str, alive: bool) -> None:
+        (self.present.add if alive else self.present.discard)(topics.process_of(topic))

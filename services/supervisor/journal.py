@@ -24,6 +24,8 @@ from services.supervisor.traceback_lines import TracebackLines
 
 _LOUD = frozenset({"warning", "error", "critical"})
 _SUPERVISOR = "supervisor"
+_REMEDY = "make room on its disk, mend it, or correct the folder's owner and rights"
+_TRY_AGAIN_S = 1.0
 _DEFAULTS = LogsConfig()
 
 
@@ -36,6 +38,9 @@ class Journal:
         folder: where the files are kept; it is made if it is missing.
         console: where a person looks.
         config: how much is kept.
+
+    Attributes:
+        problem: why nothing can be kept now, and what to do, in one line; empty if all is.
     """
 
     def __init__(self, folder: Path, console: TextIO | None = None, config: LogsConfig = _DEFAULTS) -> None:
@@ -43,7 +48,8 @@ class Journal:
         self._console = console or sys.stderr
         self._tracebacks: dict[str, TracebackLines] = defaultdict(TracebackLines)
         self._writer = LogWriter(folder, int(config.max_file_mb * 1e6), config.max_files)
-        self._problem = ""
+        self._next_try_s = time.monotonic() + _TRY_AGAIN_S
+        self.problem = ""
         self._tell_problem()
 
     def child_said(self, process: str, line: str) -> None:
@@ -56,10 +62,15 @@ class Journal:
             self._keep(record_of({"event": line.removeprefix(USER_ERROR_PREFIX), "level": "error"}, process, _now()))
 
     def settle(self) -> None:
-        """Write down the tracebacks that are whole by now; to be called now and then."""
+        """Write down the tracebacks that are whole by now, and see whether a problem is over; to be called now and then."""
+        now_s = time.monotonic()
         for process, traceback in self._tracebacks.items():
-            if traceback.is_over(time.monotonic()):
+            if traceback.is_over(now_s):
                 self._end_traceback(process)
+        if self.problem and now_s >= self._next_try_s:
+            self._next_try_s = now_s + _TRY_AGAIN_S
+            self._writer.try_again(_now())
+            self._tell_problem()
 
     def say(self, event: str, *, level: str = "info", **fields: str) -> None:
         """A line of the supervisor's own; a person always sees it."""
@@ -93,24 +104,23 @@ class Journal:
     def _keep(self, record: LogRecord, *, shown: bool = False) -> None:
         self._writer.write(record)
         self._tell_problem()
-        if shown or self._problem or record.level in _LOUD:
+        if shown or self.problem or record.level in _LOUD:
             self._show(record)
 
     def _tell_problem(self) -> None:
-        problem, before = self._writer.problem, self._problem
-        self._problem = problem
-        if problem and not before:
-            remedy = "" if problem == IN_USE else "; free or mend the disc"
-            event = f"nothing is kept in {self.path}: {problem}{remedy}"
-            self._show(record_of({"event": event, "level": "warning"}, _SUPERVISOR, _now()))
-        elif before and not problem:
+        reason, before = self._writer.problem, self.problem
+        remedy = "" if reason == IN_USE else f"; {_REMEDY}"
+        self.problem = f"nothing is kept in {self.path}: {reason}{remedy}" if reason else ""
+        if self.problem and not before:
+            self._show(record_of({"event": self.problem, "level": "warning"}, _SUPERVISOR, _now()))
+        elif before and not self.problem:
             self._show(record_of({"event": f"what is said is kept in {self.path} again"}, _SUPERVISOR, _now()))
 
     def _show(self, record: LogRecord) -> None:
         clock = record.time.astimezone().strftime("%H:%M:%S")
         said = " ".join((printable(record.event), *details(record)))
         lines = [f"{clock}  {printable(speaker(record.process)):12}  {said}".rstrip()]
-        if record.exception and self._problem:
+        if record.exception and self.problem:
             lines += record.exception.splitlines()
         elif record.exception:
             lines[0] += " ('kinebox logs' has the traceback)"

@@ -18,6 +18,7 @@ class Post:
     """What is known of one process.
 
     Attributes:
+        waits: it is not started yet because others are more urgent.
         child: the running process; None while it waits or when it was given up.
         start_at_s: when to start it next, on CLOCK_MONOTONIC; None if it runs or was given up.
         trouble: why it is being restarted; empty once it has been heard of again.
@@ -29,6 +30,7 @@ class Post:
     """
 
     spec: ChildSpec
+    waits: bool = False
     child: Child | None = None
     start_at_s: float | None = None
     trouble: str = ""

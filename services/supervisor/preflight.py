@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
+from models.camera.rig import Rig
 from models.config.site import Site
 from models.errors import UserError
 from models.process import Check
@@ -12,8 +13,8 @@ from services.support.listening import listen
 from services.support.site_files import read_site
 
 
-def check_everything(site_file: Path, data: Path, checks: Iterable[Check]) -> Site:
-    """Read the site and check what it needs: what the parts say, then the ports.
+def check_everything(site_file: Path, data: Path, checks: Iterable[Check]) -> tuple[Site, Rig]:
+    """Read the site with its calibration and check what it needs: what the parts say, then the ports.
 
     Args:
         site_file: the site file.
@@ -27,7 +28,7 @@ def check_everything(site_file: Path, data: Path, checks: Iterable[Check]) -> Si
     for check in checks:
         check(site, rig, data)
     require_ports(site)
-    return site
+    return site, rig
 
 
 def require_ports(site: Site) -> None:

@@ -11,12 +11,13 @@ from collections.abc import Iterable
 from pathlib import Path
 from threading import Event
 
+from models.camera.rig import Rig
 from models.config.site import Site
 from models.errors import USER_ERROR_CODE, UserError
 from models.messages.health import GETTING_READY, SupervisorHealth
 from models.process import EDGE, RECORDER, REPLAY, ROUTER, Check, Playback
 from services.logs.files import STARTED, log_folder
-from services.supervisor import page
+from services.supervisor import page, start_order
 from services.supervisor.bus_link import BusLink
 from services.supervisor.child import Child, ChildSpec
 from services.supervisor.journal import Journal
@@ -50,13 +51,13 @@ def supervise(site_file: Path, data: Path, checks: Iterable[Check], playback: Pl
         UserError: something is wrong with the site or what it needs; nothing was started.
     """
     stop = stop_on_signals()
-    site = check_everything(site_file, data, checks)
+    site, rig = check_everything(site_file, data, checks)
     # Beside the log of a box that may be running on the same folder.
     logs = log_folder(data)
     journal = Journal(logs / REPLAY if playback else logs, config=site.logs)
     journal.note(STARTED, site=str(site_file.resolve()), version=kinebox_version())
     try:
-        Supervisor(site_file, data, site, journal, playback).run(stop)
+        Supervisor(site_file, data, site, rig, journal, playback).run(stop)
     finally:
         journal.close()
 
@@ -72,12 +73,15 @@ def posts_of(site: Site, playback: Playback | None = None) -> list[Post]:
 class Supervisor:
     """The running box."""
 
-    def __init__(self, site_file: Path, data: Path, site: Site, journal: Journal, playback: Playback | None = None) -> None:
+    def __init__(
+        self, site_file: Path, data: Path, site: Site, rig: Rig, journal: Journal, playback: Playback | None = None
+    ) -> None:
         self._site_file = site_file
         self._data = data
         self._site = site
         self._journal = journal
         self._posts = posts_of(site, playback)
+        self._first = start_order.first([post.spec for post in self._posts], rig)
         self._name = site.name if playback is None else f"The replay of {playback.title or 'the lesson'}"
         self._environment = dict(os.environ) | process_environment(data)
         # Now, not later: a source begins with the picture that is due when it is ready, so waiting would gain nothing.
@@ -98,7 +102,10 @@ class Supervisor:
         try:
             self._journal.say(f"starting {', '.join(post.name for post in self._posts)}")
             for post in self._posts:
-                self._start(post)
+                if post.name in self._first:
+                    self._start(post)
+                else:
+                    post.waits = True
             link = BusLink(self._site.bus.endpoint)
             try:
                 self._watch(stop, link)
@@ -117,6 +124,7 @@ class Supervisor:
             now_s = time.monotonic()
             held_up, before_s = now_s - before_s > HELD_UP_S, now_s
             self._hear(link, now_s)
+            self._start_others(link, now_s)
             if held_up:
                 self._silence.restart_clocks(now_s)
             for post in self._posts:
@@ -140,6 +148,13 @@ class Supervisor:
     def _start(self, post: Post) -> None:
         post.manned_by(self._spares.take(post.name) or self._begin(post.spec, spare=False))
         self._silence.start(post.name, time.monotonic())
+
+    def _start_others(self, link: BusLink, now_s: float) -> None:
+        waiting = [post for post in self._posts if post.waits]
+        if waiting and start_order.others_may_start(self._first, link.present, now_s - self._start_ns * 1e-9):
+            for post in waiting:
+                post.waits = False
+                self._start(post)
 
     def _begin(self, spec: ChildSpec, *, spare: bool) -> Child:
         command = spec.command(self._site_file, self._data, self._start_ns, spare=spare)
@@ -210,9 +225,10 @@ class Supervisor:
     def _speak(self, link: BusLink) -> None:
         failed = {post.name: post.given_up for post in self._posts if post.given_up}
         fault = "; ".join(f"{name} is given up: {reason}" for name, reason in failed.items())
-        trouble = "; ".join(filter(None, (*(post.trouble for post in self._posts), self._machine.trouble)))
+        troubles = (*(post.trouble for post in self._posts), self._machine.trouble, self._journal.problem)
         restarts = tuple(restarts for post in self._posts if (restarts := post.restarts) is not None)
-        link.say(fault, trouble, failed, self._machine.newest, SupervisorHealth(self._version, self._start_ns, restarts))
+        own = SupervisorHealth(self._version, self._start_ns, restarts, self._journal.problem)
+        link.say(fault, "; ".join(filter(None, troubles)), failed, self._machine.newest, own)
 
     def _look_at_machine(self, now_s: float) -> None:
         for trouble in self._machine.look(now_s):

@@ -96,7 +96,7 @@ async def _serve(context: ProcessContext, server: TabletServer, listener: socket
             loop.call_soon_threadsafe(action)
 
     def seen(topic: str, alive: bool) -> None:
-        hand_over(lambda: server.set_alive(topic.rsplit("/", 1)[-1], alive))
+        hand_over(lambda: server.set_alive(topics.process_of(topic), alive))
 
     def end(part: "asyncio.Task[None]") -> None:
         web.should_exit = True
