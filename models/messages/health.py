@@ -129,11 +129,13 @@ class SupervisorHealth(msgspec.Struct, frozen=True):
         version: of the KineBox that runs.
         started_ns: CLOCK_MONOTONIC of the box's start.
         restarts: one entry for every process that ended since; empty if none did.
+        log_problem: why nothing can be kept in the log, and what to do, in one line; empty if all is kept.
     """
 
     version: str
     started_ns: int
     restarts: tuple[Restarts, ...]
+    log_problem: str = ""
 
 
 class Health(msgspec.Struct, frozen=True):

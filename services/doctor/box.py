@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from models.config.site import Site
-from models.messages.health import MachineHealth, Restarts
+from models.messages.health import MachineHealth, Restarts, SupervisorHealth
 from models.process import EDGE, ROUTER, process_name
 from services.doctor.agreement import judge_agreement
 from services.doctor.cameras import is_held_up, judge_camera
-from services.doctor.finding import Examined, Fact, Finding, Level
+from services.doctor.finding import Examined, Fact, Finding, Level, fault_of
 from services.doctor.listen import Heard
 from services.doctor.machine import machine_finding
 from services.doctor.processes import RunningBox
@@ -23,6 +23,7 @@ SLOW_SHARE = 0.8
 """Below this share of the figures wished for, movement is not smooth."""
 SUPERVISOR = "supervisor"
 _LISTENED = "listening to the bus"
+_SUPERVISORS_WORD = "the supervisor's word"
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,7 @@ def judge_box(box: BoxFacts) -> Examined:
         *_figures(box),
         *_unreadable(box),
         *_machine(box),
+        *_log(box),
         *_version(box),
     ]
     return Examined(tuple(findings), _facts(box))
@@ -110,9 +112,14 @@ def _processes(box: BoxFacts) -> Iterator[Finding]:
             yield Finding("fault", name, words, _LISTENED, remedy)
 
 
+def _supervisor(box: BoxFacts) -> SupervisorHealth | None:
+    health = box.heard.healths.get(SUPERVISOR)
+    return health.supervisor if health is not None else None
+
+
 def _told(box: BoxFacts) -> tuple[Restarts, ...]:
-    supervisor = box.heard.healths.get(SUPERVISOR)
-    return supervisor.supervisor.restarts if supervisor is not None and supervisor.supervisor is not None else ()
+    supervisor = _supervisor(box)
+    return supervisor.restarts if supervisor is not None else ()
 
 
 def _restarts(box: BoxFacts) -> Iterator[Finding]:
@@ -121,7 +128,7 @@ def _restarts(box: BoxFacts) -> Iterator[Finding]:
         if each.given_up:
             words = f"{each.process} is given up and does not run any more: {each.given_up}"
             remedy = f"read what it said last (grep '\"{each.process}\"' {box.log}), mend that, and start the box anew"
-            yield Finding("fault", each.process, words, "the supervisor's word", remedy)
+            yield Finding("fault", each.process, words, _SUPERVISORS_WORD, remedy)
         elif each.count >= OFTEN or ago_s * 1e9 < RECENT_NS:
             times = "once" if each.count == 1 else f"{each.count} times"
             words = f"{each.process} was started again {times}; {_ago(ago_s)} ago it {each.reason}"
@@ -210,25 +217,27 @@ def _machine_of(box: BoxFacts) -> MachineHealth | None:
     return supervisor.machine if supervisor is not None else None
 
 
+def _log(box: BoxFacts) -> Iterator[Finding]:
+    supervisor = _supervisor(box)
+    if supervisor is not None and supervisor.log_problem:
+        yield fault_of("log", supervisor.log_problem, _SUPERVISORS_WORD)
+
+
 def _version(box: BoxFacts) -> Iterator[Finding]:
-    supervisor = box.heard.healths.get(SUPERVISOR)
-    if supervisor is None or supervisor.supervisor is None or supervisor.supervisor.version == box.version:
+    supervisor = _supervisor(box)
+    if supervisor is None or supervisor.version == box.version:
         return
-    words = f"the box that runs is KineBox {supervisor.supervisor.version}, but this command is {box.version}"
-    yield Finding("warning", "version", words, "the supervisor's word", "end the box and start it anew with this version")
+    words = f"the box that runs is KineBox {supervisor.version}, but this command is {box.version}"
+    yield Finding("warning", "version", words, _SUPERVISORS_WORD, "end the box and start it anew with this version")
 
 
 def _facts(box: BoxFacts) -> tuple[Fact, ...]:
-    supervisor = box.heard.healths.get(SUPERVISOR)
-    if supervisor is None or supervisor.supervisor is None:
+    supervisor = _supervisor(box)
+    if supervisor is None:
         return (Fact("running box", f"{len(box.running.processes)} processes of it are there"),)
-    up = _ago(max(box.now_ns - supervisor.supervisor.started_ns, 0) * 1e-9)
+    up = _ago(max(box.now_ns - supervisor.started_ns, 0) * 1e-9)
     rate = f"{box.heard.live / box.heard.seconds:.0f} figures a second" if box.heard.seconds else "not listened to"
-    return (
-        Fact(
-            "running box", f"version {supervisor.supervisor.version}, up for {up}, {len(box.heard.healths)} processes speak, {rate}"
-        ),
-    )
+    return (Fact("running box", f"version {supervisor.version}, up for {up}, {len(box.heard.healths)} processes speak, {rate}"),)
 
 
 def _ago(seconds: float) -> str:

@@ -44,14 +44,12 @@ class LogWriter:
 
     def write(self, record: LogRecord) -> None:
         """Keep a record, or count it as lost."""
-        try:
-            self._open()
-            self._append(self._told_of_loss(record.time) + encode(record))
-        except OSError as error:
-            self._lost += 1
-            self._fail(error)
-        else:
-            self._lost, self.problem = 0, ""
+        self._keep(record.time, encode(record), 1)
+
+    def try_again(self, time: dt.datetime) -> None:
+        """If there is a problem, see whether it is over, by telling of the lines that were lost."""
+        if self.problem:
+            self._keep(time, b"", 0)
 
     def close(self) -> None:
         """Let go of the files."""
@@ -59,6 +57,16 @@ class LogWriter:
             if descriptor is not None:
                 os.close(descriptor)
         self._file = self._lock = None
+
+    def _keep(self, time: dt.datetime, data: bytes, lines: int) -> None:
+        try:
+            self._open()
+            self._append(self._told_of_loss(time) + data)
+        except OSError as error:
+            self._lost += lines
+            self._fail(error)
+        else:
+            self._lost, self.problem = 0, ""
 
     def _told_of_loss(self, time: dt.datetime) -> bytes:
         if not self._lost:

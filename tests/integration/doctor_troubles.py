@@ -252,6 +252,14 @@ def another_version(folder: Path) -> Iterator[Examined]:
         yield found
 
 
+@contextmanager
+def log_that_cannot_be_written(folder: Path) -> Iterator[Examined]:
+    (folder / "data").mkdir()
+    (folder / "data" / "logs").write_text("a file where the folder should be")
+    with running(_until_told("supervisor", "degraded"))(folder) as found:
+        yield found
+
+
 def _until_told(process: str, state: str) -> Callable[[Box], None]:
     return lambda box: _wait_for(box, process, state)
 
@@ -448,6 +456,9 @@ TROUBLES: dict[str, Trouble] = {
     "the router hangs": Trouble(running(_stop("fusion")), "fusion", r"fusion \(process \d+\) is stopped", r"kill -CONT \d+"),
     "the supervisor hangs": Trouble(running(_stop()), "supervisor", r"supervisor \(process \d+\) is stopped", "kill -CONT"),
     "the page hangs": Trouble(running(_stop("tablet")), "tablet", r"the page at port \d+ does not answer", "wait some seconds"),
+    "the log cannot be written": Trouble(
+        log_that_cannot_be_written, "log", r"nothing is kept in .*kinebox\.log: File exists", "make room on its disk"
+    ),
     "the box is of another version": Trouble(
         another_version, "version", r"the box that runs is KineBox 9\.9\.9", "start it anew with this version", "warning"
     ),

@@ -52,3 +52,20 @@ def test_a_process_that_was_given_up_stays_known_with_its_reason(tmp_path: Path)
         (restarts,) = said.supervisor.restarts
         assert (restarts.process, restarts.count) == ("edge-b", 1)
         assert restarts.given_up.startswith("ended 2 times within 60 s")
+
+
+def test_a_log_that_cannot_be_written_is_said_until_it_can(tmp_path: Path) -> None:
+    logs = tmp_path / "data" / "logs"
+    logs.parent.mkdir()
+    logs.write_text("a file where the folder should be")
+    with Box(tmp_path) as box:
+        box.wait_started()
+        with HealthWatch(box) as watch:
+            said = watch.wait_for("supervisor", "degraded")
+            assert said.supervisor is not None
+            assert said.reason == said.supervisor.log_problem
+            assert said.reason.startswith(f"nothing is kept in {logs / 'kinebox.log'}: File exists; make room")
+            logs.unlink()
+            said = watch.wait_for("supervisor", "ok")
+        assert said.supervisor is not None
+        assert said.supervisor.log_problem == ""

@@ -70,7 +70,9 @@ def examples() -> dict[str, codec.Message]:
         "health_supervisor": Health(
             "supervisor", 4714, 10**15, "failed", "edge-cam01 is given up", 0.01, 20.5,
             machine=MachineHealth(1.5, 2.0, 900.0, 12_000.0, 61.5, 10**18, 0.0, throttled=True),
-            supervisor=SupervisorHealth("0.1.0", 10**14, (Restarts("edge-cam01", 5, 10**15, "hung", "ended 6 times"),)),
+            supervisor=SupervisorHealth(
+                "0.1.0", 10**14, (Restarts("edge-cam01", 5, 10**15, "hung", "ended 6 times"),), "nothing is kept; make room"
+            ),
         ),
         "fusion_log": FusionLog(10**15, 3, (Entry("observation", 10**15 + 7, b"\x01\x01"), Entry("tick", 10**15 + 8, b""))),
         "segment_request": SegmentRequest(10**15),

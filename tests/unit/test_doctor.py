@@ -144,6 +144,13 @@ def test_the_clock_that_was_set_is_known_from_the_box_that_watched_it() -> None:
     assert words == "the clock was set back by 5.0 s in the last minute"
 
 
+def test_a_log_that_cannot_be_written_is_named_with_what_to_do() -> None:
+    told = SupervisorHealth("1.0", NOW - 90 * S, (), "nothing is kept in kinebox.log: No space left on device; make room")
+    (finding,) = judge_box(box(health("supervisor", "degraded", told.log_problem, supervisor=told))).findings
+    assert (finding.where, finding.what) == ("log", "nothing is kept in kinebox.log: No space left on device")
+    assert finding.remedy == "make room"
+
+
 def test_few_figures_are_a_finding_only_while_somebody_is_in_view() -> None:
     for pupil, count in (("found", 1), ("searching", 0)):
         fusion = FusionHealth(12.0, 2.0, 0.9, 0, {}, pupil)  # type: ignore[arg-type]

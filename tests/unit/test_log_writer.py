@@ -65,6 +65,22 @@ def test_a_line_that_a_loss_of_power_cut_off_is_shown_as_damaged_and_the_next_is
     assert numbers(lines) == [0, 2]
 
 
+def test_a_disc_that_was_mended_is_known_without_another_line(tmp_path: Path) -> None:
+    folder = tmp_path / "logs"
+    folder.write_text("a file where the folder should be")
+    writer = LogWriter(folder, 10**6, 3)
+    writer.write(numbered(0))
+    writer.try_again(NOON)
+    assert writer.problem == "File exists"
+    folder.unlink()
+    writer.try_again(NOON)
+    assert writer.problem == ""
+    writer.try_again(NOON)
+    writer.close()
+    (told,) = raw_lines(folder)
+    assert (told["lines"], told["reason"]) == (1, "File exists")
+
+
 def test_only_one_kinebox_writes_to_a_folder(tmp_path: Path) -> None:
     first, second = LogWriter(tmp_path, 10**6, 3), LogWriter(tmp_path, 10**6, 3)
     assert second.problem == IN_USE

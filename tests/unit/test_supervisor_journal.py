@@ -196,6 +196,19 @@ def test_a_second_box_on_a_folder_says_what_to_do_and_shows_everything(tmp_path:
     ]
 
 
+def test_a_quiet_log_notices_that_it_can_be_kept_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    now_s = time.monotonic()
+    monkeypatch.setattr(time, "monotonic", lambda: now_s)
+    (tmp_path / "logs").write_text("a file where the folder should be")
+    journal = Journal(tmp_path / "logs", io.StringIO())
+    assert journal.problem.startswith(f"nothing is kept in {journal.path}: File exists; ")
+    (tmp_path / "logs").unlink()
+    now_s += 1.0
+    journal.settle()
+    assert journal.problem == ""
+    journal.close()
+
+
 def test_a_log_that_can_be_kept_again_is_said(tmp_path: Path) -> None:
     (tmp_path / "logs").write_text("a file where the folder should be")
     console = io.StringIO()
