@@ -6,7 +6,7 @@ sample, so that nobody's graph shows a zero for it.
 
 import math
 from collections.abc import Callable, Iterator
-from typing import Protocol, TypeGuard, get_args
+from typing import Protocol, TypeGuard, TypeVar, get_args
 
 from prometheus_client import CollectorRegistry, generate_latest
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, InfoMetricFamily, Metric
@@ -19,6 +19,11 @@ from services.tablet.messages import CameraState, CameraStatus, MachineStatus, P
 
 CONTENT_TYPE = CONTENT_TYPE_PLAIN_0_0_4
 _MB = 2.0**20
+
+StatusT = TypeVar("StatusT")
+MemberT = TypeVar("MemberT", CameraStatus, ProcessStatus)
+_Measures = tuple[tuple[str, str, Callable[[StatusT], float | None]], ...]
+"""Name, description and value of each."""
 
 
 class Room(Protocol):
@@ -48,9 +53,10 @@ class RoomCollector(Collector):
         """Every metric with its samples now."""
         status, healths = self._room.status(), self._room.healths()
         yield from _room(status)
-        yield from _cameras(status.cameras, healths)
+        yield from _each("camera", get_args(CameraState), status.cameras, _CAMERA_GAUGES, _CAMERA_COUNTERS)
+        yield from _stages(healths)
         yield from _fusion(healths)
-        yield from _processes(status.processes)
+        yield from _each("process", get_args(ProcessState), status.processes, _PROCESS_GAUGES, _PROCESS_COUNTERS)
         yield from _machine(status.machine)
         yield from _recorder(healths)
 
@@ -100,7 +106,25 @@ def _found(status: Status) -> float | None:
     return None if status.pupil == "unknown" else float(status.pupil == "found")
 
 
-_CAMERA_GAUGES: tuple[tuple[str, str, Callable[[CameraStatus], float | None]], ...] = (
+def _each(
+    what: str, states: tuple[str, ...], members: list[MemberT], gauges: _Measures[MemberT], counters: _Measures[MemberT]
+) -> Iterator[Metric]:
+    """The state of every camera or every process, and what is measured of it."""
+    state = GaugeMetricFamily(f"kinebox_{what}_state", f"1 for the state in which the {what} is.", labels=[what, "state"])
+    for member in members:
+        for name in states:
+            state.add_metric([member.name, name], float(member.state == name))
+    yield state
+    for kind, measures in ((GaugeMetricFamily, gauges), (CounterMetricFamily, counters)):
+        for name, text, value_of in measures:
+            metric = kind(f"kinebox_{what}_{name}", text, labels=[what])
+            for member in members:
+                if _known(value := value_of(member)):
+                    metric.add_metric([member.name], value)
+            yield metric
+
+
+_CAMERA_GAUGES: _Measures[CameraStatus] = (
     ("source_hertz", "Pictures a second that the camera delivers.", lambda camera: camera.source_hz),
     ("inference_hertz", "Pose inferences a second on new pictures.", lambda camera: camera.fresh_hz),
     ("inference_target_hertz", "Pose inferences a second that the governor asks for.", lambda camera: camera.target_hz),
@@ -109,25 +133,12 @@ _CAMERA_GAUGES: tuple[tuple[str, str, Callable[[CameraStatus], float | None]], .
 )
 
 
-def _cameras(cameras: list[CameraStatus], healths: list[Health]) -> Iterator[Metric]:
-    state = _states("camera", "camera", "1 for the state in which the camera is.")
-    for camera in cameras:
-        for name in get_args(CameraState):
-            state.add_metric([camera.name, name], float(camera.state == name))
-    yield state
-    for name, text, value_of in _CAMERA_GAUGES:
-        gauge = GaugeMetricFamily(f"kinebox_camera_{name}", text, labels=["camera"])
-        for camera in cameras:
-            if _known(value := value_of(camera)):
-                gauge.add_metric([camera.name], value)
-        yield gauge
-    skipped = CounterMetricFamily(
-        "kinebox_camera_skipped_frames", "Pictures whose turn was missed, since the camera's process started.", labels=["camera"]
-    )
-    for camera in cameras:
-        if camera.skipped is not None:
-            skipped.add_metric([camera.name], camera.skipped)
-    yield skipped
+_CAMERA_COUNTERS: _Measures[CameraStatus] = (
+    ("skipped_frames", "Pictures whose turn was missed, since the camera's process started.", lambda camera: camera.skipped),
+)
+
+
+def _stages(healths: list[Health]) -> Iterator[Metric]:
     stages = GaugeMetricFamily(
         "kinebox_camera_stage_cpu_seconds", "CPU time for each picture that is looked at, by stage.", labels=["camera", "stage"]
     )
@@ -153,35 +164,18 @@ def _fusion(healths: list[Health]) -> Iterator[Metric]:
     yield ignored
 
 
-_PROCESS_GAUGES: tuple[tuple[str, str, Callable[[ProcessStatus], float | None]], ...] = (
+_PROCESS_GAUGES: _Measures[ProcessStatus] = (
     ("health_age_seconds", "Time since the process last said how it is.", lambda process: process.age_s),
     ("cpu_cores", "CPU seconds a second that the process uses.", lambda process: process.cpu_cores),
     ("resident_memory_bytes", "Memory that the process holds.", lambda process: _scaled(process.rss_mb, _MB)),
 )
 
 
-def _processes(processes: list[ProcessStatus]) -> Iterator[Metric]:
-    state = _states("process", "process", "1 for the state in which the process is.")
-    for process in processes:
-        for name in get_args(ProcessState):
-            state.add_metric([process.name, name], float(process.state == name))
-    yield state
-    for name, text, value_of in _PROCESS_GAUGES:
-        gauge = GaugeMetricFamily(f"kinebox_process_{name}", text, labels=["process"])
-        for process in processes:
-            if _known(value := value_of(process)):
-                gauge.add_metric([process.name], value)
-        yield gauge
-    restarts = CounterMetricFamily(
-        "kinebox_process_restarts", "Times that the process was started again since the box was started.", labels=["process"]
-    )
-    for process in processes:
-        if process.restarts is not None:
-            restarts.add_metric([process.name], process.restarts)
-    yield restarts
+_PROCESS_COUNTERS: _Measures[ProcessStatus] = (
+    ("restarts", "Times that the process was started again since the box was started.", lambda process: process.restarts),
+)
 
-
-_MACHINE_GAUGES: tuple[tuple[str, str, Callable[[MachineStatus], float | None]], ...] = (
+_MACHINE_GAUGES: _Measures[MachineStatus] = (
     ("used_cores", "CPU seconds a second in use on the granted cores, by whomever.", lambda machine: machine.used_cores),
     ("granted_cores", "CPU seconds a second that the box may use.", lambda machine: machine.granted_cores),
     ("memory_free_bytes", "Memory that can be had without swapping.", lambda machine: _scaled(machine.memory_free_mb, _MB)),
@@ -208,7 +202,3 @@ def _recorder(healths: list[Health]) -> Iterator[Metric]:
     yield _gauge("recorder_safe_seconds", "Length of the lesson that is safe on disk.", running.recorded_s if running else None)
     yield _gauge("recorder_file_bytes", "Size of the lesson's file.", running.size_mb * _MB if running else None)
     yield _gauge("recorder_gaps", "Interruptions since the lesson began.", running.gaps if running else None)
-
-
-def _states(what: str, label: str, text: str) -> GaugeMetricFamily:
-    return GaugeMetricFamily(f"kinebox_{what}_state", text, labels=[label, "state"])
