@@ -20,7 +20,7 @@ from services import fusion
 def main() -> None:
     """Print how many kernels there are and which lack compiled code, callees of other kernels left out."""
     kernels = list(_entry_kernels())
-    lacking = [f"{kernel.__module__.rsplit('.', 1)[-1]}.{kernel.__name__}" for kernel in kernels if not _is_compiled(kernel)]
+    lacking = [f"{kernel.__module__.rsplit('.', 1)[-1]}.{kernel.__name__}" for kernel in kernels if not is_compiled(kernel)]
     sys.stdout.write(json.dumps({"kernels": len(kernels), "lacking": lacking}) + "\n")
 
 
@@ -39,8 +39,9 @@ def _of_module(module: ModuleType) -> Iterator[Any]:
     yield from (kernel for kernel in kernels if kernel.__name__ not in called)
 
 
-def _is_compiled(kernel: Any) -> bool:
-    # Numba offers no public way to ask; its version is pinned by the lock file, and a test compiles and asks.
+def is_compiled(kernel: Any) -> bool:
+    """Whether compiled code of a kernel is on disk, for this version of its file and this processor, whatever the types."""
+    # Numba offers no public way to ask; tests/unit/test_kernels.py compiles and asks, so that another numba cannot make this wrong.
     index = kernel._cache._cache_file._load_index()
     processor = kernel.targetctx.codegen().magic_tuple()
     return any(key[1] == processor for key in index)

@@ -1,13 +1,25 @@
 """Rules of compiled code that no compiler checks."""
 
 import ast
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 import models.body
 import services.fusion
+from tests.installed import ROOT
 
+KERNEL = """
+from models.compiled import compiled
+
+@compiled
+def double(value):
+    return 2 * value
+"""
+ASK = "import kernel; from services.doctor.kernels import is_compiled; print(is_compiled(kernel.double))"
 FOLDERS = [Path(package.__file__ or "").parent for package in (services.fusion, models.body)]
 
 
@@ -28,3 +40,21 @@ def test_no_kernel_calls_one_of_another_file_whose_change_the_cache_would_not_se
         for function in functions.values():
             called = {node.func.id for node in ast.walk(function) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
             assert called & names <= set(functions), f"{path.name}: {function.name} calls {called & names - set(functions)}"
+
+
+@pytest.mark.slow
+def test_the_doctor_knows_what_numba_has_compiled_for_this_code_and_this_processor(tmp_path: Path) -> None:
+    def run(program: str, **more: str) -> str:
+        paths = {"NUMBA_CACHE_DIR": str(tmp_path / "kernels"), "PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"}
+        environment = os.environ | paths | more
+        return subprocess.run(
+            [sys.executable, "-c", program], env=environment, cwd=tmp_path, capture_output=True, text=True, check=True
+        ).stdout.strip()
+
+    (tmp_path / "kernel.py").write_text(KERNEL)
+    assert run(ASK) == "False"
+    assert run("import kernel; print(kernel.double(2.0))") == "4.0"
+    assert run(ASK) == "True"
+    assert run(ASK, NUMBA_CPU_NAME="generic", NUMBA_CPU_FEATURES="") == "False"
+    (tmp_path / "kernel.py").write_text(f"{KERNEL}# of another version\n")
+    assert run(ASK) == "False"
