@@ -110,14 +110,15 @@ def step(state: GovernorState, load: Load, t_ns: int, max_rate_hz: float, cpu_ta
     load = replace(load, cameras=[camera for camera in load.cameras if believable(camera)])
     if state.started_ns is None:
         state = replace(state, started_ns=t_ns, level=_found_in_force(load.cameras))
-    best = next(index for index, level in enumerate(LADDER) if level.rate_hz <= max_rate_hz)
-    if state.level < best:
-        return _move(state, best, t_ns)
+    # Not simply the ladder's end: a rung with the small network may have a higher rate than one above it with the large.
+    allowed = [rung for rung, level in enumerate(LADDER) if level.rate_hz <= max_rate_hz]
+    if state.level not in allowed:
+        return _move(state, _below(state.level, allowed), t_ns)
     settled_s = (t_ns - state.since_ns) * 1e-9
     started_s = (t_ns - (state.started_ns or 0)) * 1e-9
     if not load.cameras or settled_s < _SETTLING_S or started_s < _STARTING_S:
         return state
-    return _reconsider(replace(state, cost=state.cost.learn(load.cameras)), load, t_ns, best, cpu_target)
+    return _reconsider(replace(state, cost=state.cost.learn(load.cameras)), load, t_ns, allowed, cpu_target)
 
 
 def _found_in_force(cameras: Sequence[CameraHealth]) -> int:
@@ -132,14 +133,14 @@ def turn_offset_ns(position: int, cameras: int, rate_hz: float) -> int:
     return round(position / cameras / rate_hz * 1e9)
 
 
-def _reconsider(state: GovernorState, load: Load, t_ns: int, best: int, cpu_target: float) -> GovernorState:
+def _reconsider(state: GovernorState, load: Load, t_ns: int, allowed: Sequence[int], cpu_target: float) -> GovernorState:
     """Down, up or stay, once the last move has settled."""
     settled_s = (t_ns - state.since_ns) * 1e-9
-    wanted = _best_affordable(state, load, max(best, _first_allowed(state, t_ns)), cpu_target)
+    wanted = _best_affordable(state, load, [rung for rung in allowed if not _shunned(rung, state, t_ns)], cpu_target)
     if wanted > state.level or _falls_behind(state, load):
-        return _give_up(state, t_ns)
+        return _give_up(state, t_ns, allowed)
     if wanted < state.level and settled_s >= _PATIENCE_S:
-        return _move(state, state.level - 1, t_ns)
+        return _move(state, max(rung for rung in allowed if rung < state.level), t_ns)
     if state.failed is not None and state.level <= state.failed and settled_s >= _PROVEN_S:
         return replace(state, failed=None, penalty_s=_FIRST_PENALTY_S)
     return state
@@ -152,17 +153,23 @@ def predicted_cores(state: GovernorState, load: Load, level: Level) -> float:
     return max(load.used_cores - now, 0.0) + then
 
 
-def _first_allowed(state: GovernorState, t_ns: int) -> int:
-    return 0 if state.failed is None or t_ns >= state.failed_until_ns else state.failed + 1
+def _shunned(rung: int, state: GovernorState, t_ns: int) -> bool:
+    """Whether a rung is left alone, because it or one below it was given up a short time ago."""
+    return state.failed is not None and rung <= state.failed and t_ns < state.failed_until_ns
 
 
-def _best_affordable(state: GovernorState, load: Load, first: int, cpu_target: float) -> int:
+def _below(level: int, allowed: Sequence[int]) -> int:
+    """The next rung down; the lowest itself has none below."""
+    return next((rung for rung in allowed if rung > level), allowed[-1])
+
+
+def _best_affordable(state: GovernorState, load: Load, rungs: Sequence[int], cpu_target: float) -> int:
     budget = load.granted_cores * cpu_target
-    for index in range(first, len(LADDER)):
-        room = _ROOM_TO_CLIMB if index < state.level else _ROOM_TO_STAY
-        if predicted_cores(state, load, LADDER[index]) <= budget * room:
-            return index
-    return len(LADDER) - 1
+    for rung in rungs:
+        room = _ROOM_TO_CLIMB if rung < state.level else _ROOM_TO_STAY
+        if predicted_cores(state, load, LADDER[rung]) <= budget * room:
+            return rung
+    return rungs[-1]
 
 
 def _falls_behind(state: GovernorState, load: Load) -> bool:
@@ -174,12 +181,12 @@ def _falls_behind(state: GovernorState, load: Load) -> bool:
     return bool(judged) and 2 * len(slow) >= len(judged)
 
 
-def _give_up(state: GovernorState, t_ns: int) -> GovernorState:
+def _give_up(state: GovernorState, t_ns: int, allowed: Sequence[int]) -> GovernorState:
     """One rung down, and this one is left alone for a while: longer each time, or it would be tried and given up for ever."""
-    if state.level == len(LADDER) - 1:
+    if state.level == allowed[-1]:
         return state
     return replace(
-        _move(state, state.level + 1, t_ns),
+        _move(state, _below(state.level, allowed), t_ns),
         failed=state.level,
         failed_until_ns=t_ns + round(state.penalty_s * 1e9),
         penalty_s=min(2 * state.penalty_s, _LONGEST_PENALTY_S),

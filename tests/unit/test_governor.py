@@ -112,8 +112,22 @@ def test_a_rung_that_failed_is_tried_less_and_less_often() -> None:
     assert gaps[-1] > 4 * gaps[0]
 
 
-def test_the_rate_never_exceeds_what_the_site_allows() -> None:
-    assert all(state.current.rate_hz <= 10 for state in run(Box(16.0), 100, max_rate_hz=10.0)[1:])
+@pytest.mark.parametrize("max_rate_hz", [5.0, 7.5, 10.0, 15.0, 30.0])
+@pytest.mark.parametrize("in_force", [*LADDER, None], ids=str)
+def test_the_rate_never_exceeds_what_the_site_allows(max_rate_hz: float, in_force: governor.Level | None) -> None:
+    # The box is idle, then busy, then idle again, so that the ladder is walked down and up.
+    state = GovernorState(level=LADDER.index(in_force or LADDER[governor.START]))
+    states = run(Box(16.0), 60, state, max_rate_hz=max_rate_hz)
+    states += run(Box(1.0, slowness=1.6), 60, states[-1], 60, max_rate_hz=max_rate_hz)
+    states += run(Box(16.0), 600, states[-1], 120, max_rate_hz=max_rate_hz)
+    assert all(state.current.rate_hz <= max_rate_hz for state in states[1:])
+    assert states[-1].current == next(level for level in LADDER if level.rate_hz <= max_rate_hz)
+
+
+def test_a_slow_box_steps_down_past_the_rungs_that_the_site_forbids() -> None:
+    states = run(Box(2.0, slowness=1.4), 120, max_rate_hz=10.0)
+    assert states[-1].current == governor.Level(10.0, "lightning")
+    assert {state.current.network for state in states[1:]} == {"thunder", "lightning"}
 
 
 def test_one_slow_camera_does_not_slow_the_others() -> None:
@@ -134,7 +148,7 @@ def test_a_slow_source_is_not_taken_for_a_short_cpu() -> None:
 def test_a_dead_or_slow_source_does_not_hide_that_the_others_fall_behind(source_hz: float) -> None:
     behind = CameraHealth("cam", 30.0, 3.0, 10.0, 50, 90.0, "thunder", {"pose": 28.0})
     ill = CameraHealth("ill", source_hz, min(source_hz, 3.0), 10.0, 0, 5.0, "thunder", {"pose": 28.0})
-    moved = governor.step(RUNNING, Load(4.0, 1.4, [behind, behind, behind, ill]), 10**10, 10.0, 0.85)
+    moved = governor.step(RUNNING, Load(4.0, 1.4, [behind, behind, behind, ill]), 10**10, 30.0, 0.85)
     assert moved.level == governor.START + 1
 
 
