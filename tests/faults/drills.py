@@ -6,15 +6,16 @@ import random
 import signal
 import socket
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any, Literal
 
 import psutil
 
 from models.messages import codec, topics
 from models.messages.lesson import LessonRequest
-from models.process import Bus
+from models.process import RECORDER, Bus
 from tests.faults.box import Box
 from tests.faults.client import Client
 from tests.faults.garbage import garbage_of, truncated
@@ -82,12 +83,13 @@ class Stage:
         until(lambda: set(self._expected()) <= self._healthy(), "every process to be well", 60.0)
 
     def record(self, action: Literal["start", "stop"]) -> None:
-        """Have a lesson begin or end."""
+        """Have a lesson begin, of which something is safe then, or end."""
 
         def is_done() -> bool:
             self.bus.publish(topics.lesson_request(), codec.encode(LessonRequest(action, "drills")))
             time.sleep(0.3)
-            return bool(self.client.status()["recording"]) == (action == "start")
+            recording = self.client.status()["recording"]
+            return recording is None if action == "stop" else recording is not None and recording["recorded_s"] > 0
 
         until(is_done, f"the lesson to {action}")
 
@@ -98,7 +100,7 @@ class Stage:
         self.client.wait_figure(time.monotonic(), RECOVERS_WITHIN_S)
         client = self.client
         signs = [at for at in client.seen.cut_s if at > fault_s]
-        signs += [at for at, status in client.seen.statuses if at > fault_s and said(status)]
+        signs += [at for at, status in began(client.seen.statuses, said) if at > fault_s]
         return Outcome(
             drill,
             fault_s,
@@ -119,6 +121,15 @@ class Stage:
         with contextlib.suppress(psutil.NoSuchProcess):
             return all(_waits(children.get(f"{name}-spare")) for name in ("fusion", "tablet"))
         return False
+
+
+def began(
+    statuses: Sequence[tuple[float, dict[str, Any]]], said: Callable[[dict[str, Any]], bool]
+) -> Iterator[tuple[float, dict[str, Any]]]:
+    """The statuses in which something is said that was not said just before: what stands there tells of no new fault."""
+    for before, now in pairwise(statuses):
+        if said(now[1]) and not said(before[1]):
+            yield now
 
 
 def _waits(spare: psutil.Process | None) -> bool:
@@ -198,7 +209,20 @@ def full_disk(stage: Stage) -> Outcome:
             file.write(b"0")
     time.sleep(4.0)  # how long it lasts
     ballast.unlink()
-    return stage.outcome("full-disk", fault_s, lambda status: "disk" in str(status["processes"]) + str(status.get("machine")))
+    return stage.outcome("full-disk", fault_s, disk_is_called_full)
+
+
+def disk_is_called_full(status: dict[str, Any]) -> bool:
+    """Whether a status says that the disk is full: of the machine, or of a lesson that had to end or could not begin."""
+    machine = status["machine"]
+    recorder = next((each for each in status["processes"] if each["name"] == RECORDER), None)
+    if machine is not None and "disk_full" in machine["troubles"]:
+        return True
+    return (
+        recorder is not None
+        and recorder["state"] == "degraded"
+        and any(words in recorder["reason"] for words in (" ended: ", "no lesson was begun"))
+    )
 
 
 def may_set_clock() -> bool:
@@ -216,7 +240,12 @@ def clock_step(stage: Stage) -> Outcome:
     fault_s = time.monotonic()
     with _stepped(CLOCK_STEP_S):
         time.sleep(3.0)  # how long it lasts
-    return stage.outcome("clock-step", fault_s, lambda status: "clock" in str(status["processes"]))
+    return stage.outcome("clock-step", fault_s, clock_is_called_set)
+
+
+def clock_is_called_set(status: dict[str, Any]) -> bool:
+    """Whether a status says that the wall clock was set."""
+    return status["machine"] is not None and "clock_set" in status["machine"]["troubles"]
 
 
 @contextlib.contextmanager
