@@ -14,6 +14,7 @@ Processes = Annotated[
     list[str] | None, typer.Option("--process", metavar="NAME", help="Lines of this process; may be given again.")
 ]
 Grep = Annotated[str, typer.Option(metavar="TEXT", help="Lines with this text, in upper or lower case.")]
+Replay = Annotated[bool, typer.Option("--replay", help="The log of 'kinebox replay' in place of the box's.", show_default=False)]
 
 
 def add_to(app: typer.Typer) -> None:
@@ -34,12 +35,13 @@ def logs_show(
     lines: Annotated[int, typer.Option("-n", "--lines", min=0, help="Print so many, the last ones.")] = 200,
     follow: Annotated[bool, typer.Option("--follow", "-f", help="Go on with new lines.", show_default=False)] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON lines, for programs.", show_default=False)] = False,
+    replay: Replay = False,
 ) -> None:
     """Print the log of the box, of all its processes."""
     if context.invoked_subcommand is None:
         from services.cli import logs  # noqa: PLC0415
 
-        logs.show(data, logs.query_of(since, level, process, grep), lines, json=json, follow=follow)
+        logs.show(data, logs.query_of(since, level, process, grep), lines, json=json, follow=follow, replay=replay)
 
 
 def logs_export(
@@ -52,8 +54,9 @@ def logs_export(
     site: Annotated[
         Path | None, typer.Option(help="The site file; if left out, the one of the last start.", dir_okay=False)
     ] = None,
+    replay: Replay = False,
 ) -> None:
     """Pack the log, the versions, the machine and the site file without its secrets into a zip."""
     from services.cli import logs  # noqa: PLC0415
 
-    typer.echo(logs.pack(file, data, logs.query_of(since, level, process, grep), site), nl=False)
+    typer.echo(logs.pack(file, data, logs.query_of(since, level, process, grep), site, replay=replay), nl=False)

@@ -13,6 +13,7 @@ from pathlib import Path
 import tomlkit
 
 from models.errors import UserError
+from models.process import REPLAY
 from services.cli.duration import parse_duration
 from services.logs.export import export
 from services.logs.files import STARTED, log_folder, log_numbers
@@ -28,19 +29,20 @@ _LOOK_AGAIN_S = 0.2
 _AGO = re.compile(r"[\dhms]*[hms]")
 
 
-def show(data: Path, query: Query, most: int, *, json: bool, follow: bool) -> None:
+def show(data: Path, query: Query, most: int, *, json: bool, follow: bool, replay: bool) -> None:
     """Print the last `most` lines that are wanted; then, if asked to, every further one as it is written, until Ctrl-C."""
+    folder = log_folder(data, replay=replay)
     if not follow:
-        _require_log(data)
+        _require_log(folder)
     with suppress(KeyboardInterrupt), _readable_log():
-        lines, reader = last_lines(log_folder(data), query, most, torn=not follow)
+        lines, reader = last_lines(folder, query, most, torn=not follow)
         _print(lines, json=json)
         while follow:
             time.sleep(_LOOK_AGAIN_S)
             _print(query.select(reader.poll()), json=json)
 
 
-def pack(file: Path, data: Path, query: Query, site: Path | None) -> str:
+def pack(file: Path, data: Path, query: Query, site: Path | None, *, replay: bool) -> str:
     """Write the wanted lines and what helps to understand them into a zip; what there is to say of it.
 
     Args:
@@ -48,12 +50,14 @@ def pack(file: Path, data: Path, query: Query, site: Path | None) -> str:
         data: the data folder.
         query: the wanted lines.
         site: the site file; the one that the box was last started with if it is None, and none if that is gone.
+        replay: the log of replays in place of the box's.
     """
-    _require_log(data)
-    site = site or _site_of_last_start(data)
+    folder = log_folder(data, replay=replay)
+    _require_log(folder)
+    site = site or _site_of_last_start(folder)
     toml = None if site is None else _site_without_secrets(site)
     with _readable_log():
-        lines = wanted_lines(log_folder(data), query)
+        lines = wanted_lines(folder, query)
         manifest = export(file, lines, toml, _told(query), dt.datetime.now(dt.UTC))
     included = f"the site file {site}" if site is not None else "no site file (name it with --site)"
     return f"{file} holds {manifest['lines']['count']} lines and {included}; no pictures, keypoints or passwords\n"
@@ -97,14 +101,14 @@ def _readable_log() -> Iterator[None]:
         raise UserError(f"the log cannot be read: {error.strerror} ({error.filename})") from error
 
 
-def _require_log(data: Path) -> None:
-    folder = log_folder(data)
+def _require_log(folder: Path) -> None:
     try:
         found = log_numbers(folder)
     except OSError as error:
         raise UserError(f"the log in {folder} cannot be read: {error.strerror}; correct --data or its rights") from error
     if not found:
-        raise UserError(f"there is no log in {folder}; 'kinebox run' writes it there, or name another folder with --data")
+        writer = "kinebox replay" if folder.name == REPLAY else "kinebox run"
+        raise UserError(f"there is no log in {folder}; '{writer}' writes it there, or name another folder with --data")
 
 
 def _print(lines: Iterable[Line], *, json: bool) -> None:
@@ -115,10 +119,10 @@ def _print(lines: Iterable[Line], *, json: bool) -> None:
     sys.stdout.flush()
 
 
-def _site_of_last_start(data: Path) -> Path | None:
+def _site_of_last_start(folder: Path) -> Path | None:
     sites = [
         str(line.record.fields.get("site", ""))
-        for line in wanted_lines(log_folder(data), Query(processes=("supervisor",), text=STARTED))
+        for line in wanted_lines(folder, Query(processes=("supervisor",), text=STARTED))
         if line.record is not None and line.record.event == STARTED
     ]
     file = Path(sites[-1]) if sites and sites[-1] else None

@@ -3,6 +3,8 @@
 import re
 from pathlib import Path
 
+from models.process import REPLAY
+
 LATEST = "kinebox.log"
 """A link to the file that is written now, for people and their tools."""
 STARTED = "the box starts"
@@ -10,9 +12,9 @@ STARTED = "the box starts"
 _NAME = re.compile(r"kinebox-(\d{6,})\.log")
 
 
-def log_folder(data: Path) -> Path:
-    """Where the log is kept."""
-    return data / "logs"
+def log_folder(data: Path, *, replay: bool = False) -> Path:
+    """Where the log of the box is kept, or that of replays, which may run beside a box on the same data folder."""
+    return data / "logs" / REPLAY if replay else data / "logs"
 
 
 def log_path(folder: Path, number: int) -> Path:

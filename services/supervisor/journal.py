@@ -38,14 +38,18 @@ class Journal:
         folder: where the files are kept; it is made if it is missing.
         console: where a person looks.
         config: how much is kept.
+        command: shows what is kept.
 
     Attributes:
         problem: why nothing can be kept now, and what to do, in one line; empty if all is.
     """
 
-    def __init__(self, folder: Path, console: TextIO | None = None, config: LogsConfig = _DEFAULTS) -> None:
+    def __init__(
+        self, folder: Path, console: TextIO | None = None, config: LogsConfig = _DEFAULTS, command: str = "kinebox logs"
+    ) -> None:
         self.path = folder / LATEST
         self._console = console or sys.stderr
+        self._command = command
         self._tracebacks: dict[str, TracebackLines] = defaultdict(TracebackLines)
         self._writer = LogWriter(folder, int(config.max_file_mb * 1e6), config.max_files)
         self._next_try_s = time.monotonic() + _TRY_AGAIN_S
@@ -123,7 +127,7 @@ class Journal:
         if record.exception and self.problem:
             lines += record.exception.splitlines()
         elif record.exception:
-            lines[0] += " ('kinebox logs' has the traceback)"
+            lines[0] += f" ('{self._command}' has the traceback)"
         try:
             self._console.write("\n".join(lines) + "\n")
             self._console.flush()

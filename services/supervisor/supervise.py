@@ -52,9 +52,9 @@ def supervise(site_file: Path, data: Path, checks: Iterable[Check], playback: Pl
     """
     stop = stop_on_signals()
     site, rig = check_everything(site_file, data, checks)
-    # Beside the log of a box that may be running on the same folder.
-    logs = log_folder(data)
-    journal = Journal(logs / REPLAY if playback else logs, config=site.logs)
+    replay = playback is not None
+    command = "kinebox logs --replay" if replay else "kinebox logs"
+    journal = Journal(log_folder(data, replay=replay), config=site.logs, command=command)
     journal.note(STARTED, site=str(site_file.resolve()), version=kinebox_version())
     try:
         Supervisor(site_file, data, site, rig, journal, playback).run(stop)

@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from models.config.site import SITE_VERSION
-from services.logs.files import STARTED, log_path
+from services.logs.files import STARTED, log_folder, log_path
 from services.logs.record import LogRecord
 from services.logs.writer import LogWriter
 from tests.integration.box import ROOT, Box
@@ -103,6 +103,19 @@ def test_what_makes_no_sense_is_one_line_and_code_2(tmp_path: Path, words: tuple
     assert (result.returncode, result.stdout) == (2, "")
     assert result.stderr.startswith(f"kinebox: {line}")
     assert result.stderr.count("\n") == 1
+
+
+def test_the_log_of_replays_is_shown_and_packed_if_asked_for(data: Path) -> None:
+    none = kinebox_logs(data, "--replay")
+    assert none.returncode == 2
+    assert none.stderr.startswith(f"kinebox: there is no log in {data / 'logs' / 'replay'}; 'kinebox replay' writes it there")
+    writer = LogWriter(log_folder(data, replay=True), 20_000, 5)
+    writer.write(record("replay", "info", "the lesson is over"))
+    writer.close()
+    assert kinebox_logs(data, "--replay", "--json").stdout.count("the lesson is over") == 1
+    assert "the lesson is over" not in kinebox_logs(data).stdout
+    packed = kinebox_logs(data, "export", str(data / "replay.zip"), "--replay")
+    assert packed.stdout.startswith(f"{data / 'replay.zip'} holds 1 lines and no site file")
 
 
 def test_damaged_lines_are_shown_as_such(data: Path) -> None:

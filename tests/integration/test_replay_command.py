@@ -151,13 +151,16 @@ def test_a_lesson_that_is_being_recorded_is_refused(tmp_path: Path) -> None:
     assert "is not finished" in refused(writer.path, "--check")
 
 
-def test_a_lesson_that_turns_out_unreadable_while_it_is_played_ends_the_replay(tmp_path: Path) -> None:
+def test_a_lesson_that_turns_out_unreadable_while_it_is_played_ends_the_replay_and_its_log_says_so(tmp_path: Path) -> None:
     writer = LessonWriter.create(tmp_path, "lesson", gym_header(GYM))
     writer.append(FusionLog(T0_NS, 0, (Entry("observation", T0_NS, b"\x09\x01 of a newer wire format"),)))
-    data, port = str(ROOT / "build"), str(free_port())
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "kernels").symlink_to(ROOT / "build" / "kernels")
+    data, port = str(tmp_path / "data"), str(free_port())
     result = run("-m", "services.cli.main", "replay", str(writer.finish()), "--data", data, "--port", port)
     assert result.returncode == 2
     assert "wire format version 9" in result.stderr.splitlines()[-1]
+    assert "wire format version 9" in run("-m", "services.cli.main", "logs", "--replay", "--data", data).stdout
 
 
 def test_a_cut_off_lesson_is_recovered_and_all_that_was_recovered_replays_elsewhere(tmp_path: Path, good: Path) -> None:
