@@ -85,7 +85,8 @@ def _play_in(box: Box, names: Sequence[str], runs: int, processes: list[psutil.P
 def _shelve(box: Box, shelf: Path) -> None:
     shelf.mkdir(exist_ok=True)
     for lesson in sorted(box.data.rglob("*.mcap")):
-        shutil.move(lesson, shelf)
+        taken = len(list(shelf.iterdir()))  # lessons of one minute have one name, if the first is out of the way
+        shutil.move(lesson, shelf / f"{taken:04d}-{lesson.name}")
 
 
 def _recorded_s(shelf: Path) -> list[float]:
