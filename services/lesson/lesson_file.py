@@ -32,9 +32,11 @@ from mcap.records import (
 
 from models.messages.lesson import FusionLog
 from services.lesson import lesson_header
+from services.lesson.free_names import rename_free
 from services.lesson.layout import CHANNEL_OF, CHANNELS, MARK, PART_SUFFIX, PROFILE, SCHEMAS, SUFFIX, Mark
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.mcap_records import MAGIC, encode, encode_messages
+from services.support.sync import sync_folder
 
 _COMPRESSION = "zstd"
 _LEVEL = 6
@@ -126,7 +128,7 @@ class LessonWriter:
         writer = cls(path, file, header, contents)
         try:
             writer._write(before + body + encode(*SCHEMAS, *CHANNELS))
-            _sync_folder(folder)
+            sync_folder(folder)
         except BaseException:
             file.close()
             path.unlink()
@@ -178,16 +180,15 @@ class LessonWriter:
         contents.take_chunk(start, len(body), chunk, messages, mark)
 
     def finish(self) -> Path:
-        """Write the summary, close the file and give it its final name.
+        """Write the summary, close the file and give it its final name, numbered if there is a file of that name; its path.
 
         Raises:
             OSError: as for `append`; the file stays unfinished, and can be finished by recovery.
         """
         self._write(_summary(self._contents))
         self._file.close()
-        finished = self.path.with_name(self.path.name.removesuffix(PART_SUFFIX) + SUFFIX)
-        self.path.rename(finished)
-        _sync_folder(finished.parent)
+        finished = rename_free(self.path, self.path.name.removesuffix(PART_SUFFIX), SUFFIX)
+        sync_folder(finished.parent)
         return finished
 
     def close(self) -> None:
@@ -255,12 +256,3 @@ def _summary(contents: Contents) -> bytes:
     # The footer up to its own check sum is part of what the sum is over.
     checksum = zlib.crc32(summary + struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offsets_start))
     return data_end + summary + encode(Footer(start, offsets_start, checksum)) + MAGIC
-
-
-def _sync_folder(folder: Path) -> None:
-    """Make the names in a folder safe as well."""
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

@@ -14,18 +14,23 @@ from typing import BinaryIO
 
 import msgspec
 from mcap.opcode import Opcode
-from mcap.records import Header, Message, Metadata
+from mcap.records import Header, Metadata
 
 from models.errors import UserError
 from models.messages.lesson import Entry
 from services.lesson import lesson_header
 from services.lesson.layout import MARK, PART_SUFFIX, PROFILE, Mark, entry
 from services.lesson.lesson_header import HeaderError, LessonHeader, NewerFormatError
-from services.lesson.mcap_records import DamageError, Place, messages, parse, walk
+from services.lesson.mcap_records import DamageError, OpenChunk, open_chunk, parse, walk
 
 _RECOVER = (
-    f"give it a name that ends with '{PART_SUFFIX}', in the folder of lessons, and start KineBox: all before that is recovered"
+    f"give it a name that ends with '{PART_SUFFIX}', in the folder of lessons, and start KineBox: all before that is recovered, "
+    "and the damaged file is kept"
 )
+
+
+class NewerLessonError(UserError):
+    """The lesson was recorded by a KineBox that came after this one."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +99,7 @@ class Lesson:
         try:
             for place in walk(self._file):
                 if place.opcode == Opcode.CHUNK:
-                    yield decoder.decode(place)
+                    yield decoder.decode(open_chunk(place))
         except DamageError as error:
             raise UserError(f"lesson {self.path} is damaged: {error}; {_RECOVER}") from error
 
@@ -115,27 +120,24 @@ class PartDecoder:
         self._sequence = 0
         self._segment_ns: int | None = None
 
-    def decode(self, place: Place) -> LessonPart:
-        """The part of the next chunk; DamageError if it is changed or not the next one."""
-        marked, *rest = self._numbered(place)
+    def decode(self, chunk: OpenChunk) -> LessonPart:
+        """The part of the next chunk; DamageError if it is not the next one, or no part."""
+        number = self._sequence
+        found = chunk.messages
+        self._sequence += len(found)
+        if not found or [message.sequence for message in found] != list(range(number, self._sequence)):
+            raise DamageError(f"something is missing before message {number}")
+        marked, *rest = found
         if marked.channel_id != MARK:
-            raise DamageError(f"the chunk at byte {place.start} does not say what it is part of")
+            raise DamageError(f"the chunk of message {number} does not say what it is part of")
         try:
             mark = msgspec.json.decode(marked.data, type=Mark)
             entries = tuple(entry(message.channel_id, message.publish_time, message.data) for message in rest)
         except (msgspec.MsgspecError, KeyError) as error:
-            raise DamageError(f"the chunk at byte {place.start} holds what no lesson does") from error
+            raise DamageError(f"the chunk of message {number} holds what no lesson does") from error
         begins = mark.segment_ns != self._segment_ns
         self._segment_ns = mark.segment_ns
         return LessonPart(mark.segment_ns, mark.sequence, begins, mark.gap, entries)
-
-    def _numbered(self, place: Place) -> tuple[Message, ...]:
-        found = messages(place)
-        first = self._sequence
-        self._sequence += len(found)
-        if not found or [message.sequence for message in found] != list(range(first, self._sequence)):
-            raise DamageError(f"something is missing before byte {place.end}")
-        return found
 
 
 def summarise(header: LessonHeader, parts: Iterator[LessonPart]) -> LessonSummary:
@@ -177,7 +179,12 @@ def open_lesson(path: Path) -> Lesson:
 
 
 def read_header(path: Path, file: BinaryIO) -> LessonHeader:
-    """The header of a lesson, finished or not; UserError if it has none that can be read. Reads from the file's beginning."""
+    """The header of a lesson, finished or not. Reads from the file's beginning.
+
+    Raises:
+        NewerLessonError: this KineBox does not know the file's format.
+        UserError: it has no header that can be read.
+    """
     foreign = UserError(f"{path} is no lesson of KineBox; name a file that 'kinebox lessons' lists")
     file.seek(0)
     try:
@@ -191,7 +198,7 @@ def read_header(path: Path, file: BinaryIO) -> LessonHeader:
             raise DamageError(f"the record at byte {second.start} is not the lesson's header")
         return LessonHeader.from_metadata(metadata.metadata)
     except NewerFormatError as error:
-        raise UserError(f"lesson {path} was recorded by a newer KineBox: {error}; update this one to read it") from error
+        raise NewerLessonError(f"lesson {path} was recorded by a newer KineBox: {error}; update this one to read it") from error
     except HeaderError as error:
         raise UserError(f"lesson {path} is damaged: {error}, and nothing can be read without it; use a copy of the file") from error
     except DamageError as error:

@@ -19,6 +19,8 @@ from mcap.records import Chunk, DataEnd, McapRecord, Message
 MAGIC = b"\x89MCAP0\r\n"
 _HEAD = struct.Struct("<BQ")
 _MESSAGE = struct.Struct("<HIQQ")
+_CHUNK = struct.Struct("<QQQII4sQ")
+"""Of a chunk before its data: times, size, CRC-32, name of the compression, and last the length of the data."""
 _LARGEST_RECORD = 64 * 2**20
 _LARGEST_CHUNK = 256 * 2**20
 
@@ -27,6 +29,10 @@ RecordT_co = TypeVar("RecordT_co", covariant=True)
 
 class DamageError(ValueError):
     """Bytes that are no MCAP file, or are one no more; says what is wrong and at which byte."""
+
+
+class CutOffError(DamageError):
+    """The file ends in the middle of a record, or where another should begin, and is otherwise as it was written."""
 
 
 class Place(NamedTuple):
@@ -45,6 +51,13 @@ class Place(NamedTuple):
     checksum: int
 
 
+class OpenChunk(NamedTuple):
+    """A chunk and the messages in it, in their order."""
+
+    chunk: Chunk
+    messages: tuple[Message, ...]
+
+
 class _Readable(Protocol[RecordT_co]):
     @staticmethod
     def read(stream: ReadDataStream) -> RecordT_co: ...
@@ -54,7 +67,9 @@ def walk(file: BinaryIO) -> Iterator[Place]:
     """Every record from the beginning up to and including the footer.
 
     Raises:
-        DamageError: the file does not begin as MCAP, is cut off, or its data section differs from its check sum.
+        CutOffError: the file ends too early.
+        DamageError: it does not begin as MCAP, a record cannot be of the length that it says, or the data section differs from its
+            check sum.
     """
     magic = file.read(len(MAGIC))
     if magic != MAGIC:
@@ -63,13 +78,15 @@ def walk(file: BinaryIO) -> Iterator[Place]:
     while True:
         head = file.read(_HEAD.size)
         if len(head) < _HEAD.size:
-            raise DamageError(f"it is cut off at byte {start}")
+            raise CutOffError(f"it is cut off at byte {start}")
         opcode, length = _HEAD.unpack(head)
         if length > _LARGEST_RECORD:
             raise DamageError(f"byte {start} begins no record")
         body = file.read(length)
         if len(body) < length:
-            raise DamageError(f"it is cut off within the record at byte {start}")
+            if not _is_beginning(opcode, length, body):
+                raise DamageError(f"the record at byte {start} would go on beyond the end of the file")
+            raise CutOffError(f"it is cut off within the record at byte {start}")
         place = Place(opcode, start, start + len(head) + length, body, zlib.crc32(body, zlib.crc32(head, checksum)))
         if opcode == Opcode.DATA_END and parse(DataEnd, place).data_section_crc not in (0, checksum):
             raise DamageError("its data differ from their check sum")
@@ -93,8 +110,8 @@ def parse(kind: type[_Readable[RecordT_co]], place: Place) -> RecordT_co:
         raise DamageError(f"the record at byte {place.start} cannot be read") from error
 
 
-def messages(place: Place) -> tuple[Message, ...]:
-    """The messages of the chunk at a place, in their order, checked against the chunk's check sum.
+def open_chunk(place: Place) -> OpenChunk:
+    """The chunk at a place, checked against its length and its check sum.
 
     Raises:
         DamageError: the chunk was changed, or is compressed otherwise than by Zstandard.
@@ -102,6 +119,8 @@ def messages(place: Place) -> tuple[Message, ...]:
     chunk = parse(Chunk, place)
     if chunk.compression != "zstd" or chunk.uncompressed_size > _LARGEST_CHUNK:
         raise DamageError(f"the chunk at byte {place.start} is none that KineBox writes")
+    if len(place.body) != _CHUNK.size + len(chunk.data):
+        raise DamageError(f"the chunk at byte {place.start} says two different lengths")
     try:
         if zstandard.frame_content_size(chunk.data) != chunk.uncompressed_size:
             raise DamageError(f"the chunk at byte {place.start} was changed")
@@ -111,7 +130,7 @@ def messages(place: Place) -> tuple[Message, ...]:
     if zlib.crc32(data) != chunk.uncompressed_crc:
         raise DamageError(f"the chunk at byte {place.start} differs from its check sum")
     try:
-        return tuple(_messages(data))
+        return OpenChunk(chunk, tuple(_messages(data)))
     except struct.error as error:
         raise DamageError(f"the chunk at byte {place.start} is none that KineBox writes") from error
 
@@ -132,6 +151,17 @@ def encode(*records: McapRecord) -> bytes:
     for record in records:
         record.write(builder)
     return bytes(builder.end())  # type: ignore[no-untyped-call]
+
+
+def _is_beginning(opcode: int, length: int, body: bytes) -> bool:
+    """Whether a record that ends too early was cut off there, rather than its length changed: a chunk says its length twice.
+
+    Of another kind none is left behind: the others are written with their file's beginning or behind its last chunk. Where less is
+    left than stands in a chunk before its data, there is nothing to lose.
+    """
+    if len(body) < _CHUNK.size:
+        return True
+    return opcode == Opcode.CHUNK and _CHUNK.unpack_from(body)[-1] == length - _CHUNK.size
 
 
 def _messages(data: bytes) -> Iterator[Message]:

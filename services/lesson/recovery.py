@@ -1,31 +1,45 @@
 """What a crash left is made whole again: cut after its last whole chunk, and then finished or gone on with.
 
-Nothing is thrown away but the beginning of one chunk: of a file that is damaged otherwise, the whole is kept beside what was
-recovered.
+A crash leaves the beginning of one chunk behind the last whole one, and nothing but that is thrown away: of a file that is damaged
+in any other way, a copy is kept beside what was recovered. No file is overwritten, and one of a newer KineBox is left as it is.
 """
 
+import os
 import shutil
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, NamedTuple
 
 import structlog
 from mcap.opcode import Opcode
-from mcap.records import Chunk, MetadataIndex
+from mcap.records import MetadataIndex
 
 from models.errors import UserError
 from services.lesson import lesson_header
+from services.lesson.free_names import rename_free, reserve
 from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX, Mark
 from services.lesson.lesson_file import Contents, LessonWriter
-from services.lesson.lesson_reader import PartDecoder, read_header
-from services.lesson.mcap_records import DamageError, messages, parse, walk
+from services.lesson.lesson_reader import NewerLessonError, PartDecoder, read_header
+from services.lesson.mcap_records import CutOffError, DamageError, open_chunk, walk
+from services.support.sync import sync_folder
 
-DAMAGED_SUFFIX = ".damaged"
-_LARGEST_TAIL = 2 * 2**20
-"""A crash leaves no more behind the last whole chunk; if there is more, the damage is another, and a copy is kept."""
+DAMAGED_SUFFIX = f"{PART_SUFFIX}.damaged"
 log = structlog.get_logger()
 
 _BEGINNING = (Opcode.HEADER, Opcode.METADATA, Opcode.SCHEMA, Opcode.CHANNEL)
+_DATA_END_BYTES = 4
+
+
+class Survey(NamedTuple):
+    """What was found in a file.
+
+    Attributes:
+        contents: up to where it can be read.
+        damage: why it cannot be read further; empty if it was only cut off or if its summary follows, which is made anew.
+    """
+
+    contents: Contents
+    damage: str
 
 
 def recover(folder: Path, run_ns: int) -> LessonWriter | None:
@@ -42,13 +56,11 @@ def recover(folder: Path, run_ns: int) -> LessonWriter | None:
     goes_on: LessonWriter | None = None
     for path in sorted(folder.glob(f"*{PART_SUFFIX}")):
         try:
-            writer = reopen(path)
-        except UserError as error:
-            path.rename(path.with_name(path.name + DAMAGED_SUFFIX))
-            log.warning("nothing could be recovered", lesson=path.name, reason=str(error))
-            continue
+            writer = _reopened(path)
         except OSError as error:
             log.warning("a lesson could not be recovered", lesson=path.name, reason=str(error))
+            continue
+        if writer is None:
             continue
         log.info("lesson recovered", lesson=path.name, mb=round(writer.size / 1e6, 2))
         if writer.header.run_ns == run_ns and (goes_on is None or writer.header.started_ns > goes_on.header.started_ns):
@@ -58,23 +70,37 @@ def recover(folder: Path, run_ns: int) -> LessonWriter | None:
     return goes_on
 
 
+def _reopened(path: Path) -> LessonWriter | None:
+    """As `reopen`; None, having said so, of a file that this KineBox cannot recover."""
+    try:
+        return reopen(path)
+    except NewerLessonError as error:
+        log.warning("an unfinished lesson waits for an update", lesson=path.name, reason=str(error))
+    except UserError as error:
+        kept = rename_free(path, _name(path), DAMAGED_SUFFIX)
+        log.warning("nothing could be recovered", lesson=path.name, kept=kept.name, reason=str(error))
+    return None
+
+
 def reopen(path: Path) -> LessonWriter:
     """Open an unfinished lesson after its last whole chunk; what lies behind that is cut off.
 
     Raises:
+        NewerLessonError: this KineBox does not know the file's format.
         UserError: the file has no header that can be read, so there is nothing to recover.
-        OSError: it cannot be read or written.
+        OSError: it cannot be read or written, or there is no room for the copy of a damaged one; it is as it was.
     """
     file = path.open("r+b", buffering=0)
     try:
         header = read_header(path, file)
-        contents = survey(file)
+        contents, damage = survey(file)
+        if damage:
+            kept = _keep(path)
+            log.warning("lesson damaged", lesson=path.name, kept=kept.name, reason=damage)
         if not contents.chunks:
             file.close()
             path.unlink()
-            return LessonWriter.create(path.parent, path.name.removesuffix(PART_SUFFIX), header)
-        if path.stat().st_size - contents.end > _LARGEST_TAIL:
-            shutil.copyfile(path, path.with_name(path.name + DAMAGED_SUFFIX))
+            return LessonWriter.create(path.parent, _name(path), header)
         file.seek(contents.end)
         file.truncate()
     except BaseException:
@@ -83,24 +109,47 @@ def reopen(path: Path) -> LessonWriter:
     return LessonWriter(path, file, header, contents)
 
 
-def survey(file: BinaryIO) -> Contents:
+def survey(file: BinaryIO) -> Survey:
     """What a file with a good header holds, up to its first damage or, if there is none, its summary."""
     contents, decoder = Contents(), PartDecoder()
     file.seek(0)
     try:
         for place in walk(file):
+            if place.opcode == Opcode.DATA_END and len(place.body) == _DATA_END_BYTES:
+                break
             if place.opcode == Opcode.METADATA:
                 contents.metadata = MetadataIndex(place.start, place.end - place.start, lesson_header.NAME)
             if place.opcode == Opcode.CHUNK:
-                part = decoder.decode(place)
+                opened = open_chunk(place)
+                part = decoder.decode(opened)
                 mark = Mark(part.segment_ns, part.sequence, part.gap)
-                contents.take_chunk(place.start, place.end - place.start, parse(Chunk, place), messages(place), mark)
+                contents.take_chunk(place.start, place.end - place.start, opened.chunk, opened.messages, mark)
             elif contents.chunks or place.opcode not in _BEGINNING:
-                break
+                return Survey(contents, f"the record at byte {place.start} is of no kind that may stand there")
             contents.end, contents.checksum = place.end, place.checksum
-    except DamageError:
-        pass  # Here the file ends.
-    return contents
+    except CutOffError:
+        pass
+    except DamageError as error:
+        return Survey(contents, str(error))
+    return Survey(contents, "")
+
+
+def _keep(path: Path) -> Path:
+    """Copy a damaged file beside itself; the copy is safe when this returns."""
+    kept = reserve(path.parent, _name(path), DAMAGED_SUFFIX)
+    try:
+        shutil.copyfile(path, kept)
+        with kept.open("rb") as copy:
+            os.fsync(copy.fileno())
+        sync_folder(kept.parent)
+    except OSError:
+        kept.unlink(missing_ok=True)
+        raise
+    return kept
+
+
+def _name(path: Path) -> str:
+    return path.name.removesuffix(PART_SUFFIX)
 
 
 def _finish(writer: LessonWriter) -> None:

@@ -18,6 +18,7 @@ from models.config.migrations import migrate
 from models.config.site import decode_site, site_version
 from models.errors import UserError
 from services.support.site_files import read_file
+from services.support.sync import sync_folder
 
 Table = dict[str, Any]
 
@@ -140,7 +141,7 @@ def _replace(file: Path, data: bytes) -> None:
         temporary.replace(file)
     finally:
         temporary.unlink(missing_ok=True)
-    _sync_folder(file.parent)
+    sync_folder(file.parent)
 
 
 def _write_new(path: Path, data: bytes, mode: int) -> None:
@@ -156,12 +157,4 @@ def _write_new(path: Path, data: bytes, mode: int) -> None:
     except OSError:
         path.unlink(missing_ok=True)
         raise
-    _sync_folder(path.parent)
-
-
-def _sync_folder(folder: Path) -> None:
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
+    sync_folder(path.parent)

@@ -9,15 +9,17 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 import pytest
+import zstandard
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from models.errors import UserError
 from models.messages.lesson import FusionLog
-from services.lesson import index
+from services.lesson import index, lesson_header
 from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import Contents, LessonWriter
 from services.lesson.lesson_reader import LessonPart, open_lesson
+from services.lesson.mcap_records import walk
 from services.lesson.recovery import DAMAGED_SUFFIX, recover, reopen, survey
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
 
@@ -57,7 +59,7 @@ def test_whatever_a_crash_cuts_off_every_part_that_was_safe_is_found_again() -> 
     data, stages = written()
     for cut in range(stages[0].end, len(data)):
         safe = max((stage for stage in stages if stage.end <= cut), key=lambda stage: stage.end)
-        assert survey(BytesIO(data[:cut])) == safe, f"cut at byte {cut}"
+        assert survey(BytesIO(data[:cut])) == (safe, ""), f"cut at byte {cut}"
 
 
 @settings(max_examples=60, deadline=None)
@@ -100,20 +102,26 @@ def test_a_changed_byte_is_noticed_or_does_not_matter(folder: Path, at: int, fli
 
 @settings(max_examples=150, deadline=None)
 @given(at=st.integers(0, len(written().data) - 1), flip=st.integers(1, 255), cut=st.integers(0, 400))
-def test_recovery_of_a_changed_file_keeps_all_before_the_change(folder: Path, at: int, flip: int, cut: int) -> None:
+def test_recovery_of_a_changed_file_keeps_all_before_the_change_and_the_changed_file(at: int, flip: int, cut: int) -> None:
     data, stages = bytearray(written().data), written().stages
     data[at] ^= flip
-    left = folder / f"changed{PART_SUFFIX}"
-    left.write_bytes(data[: len(data) - cut])
-    try:
-        writer = reopen(left)
-    except UserError:
-        assert at < stages[0].end
-        return
-    with open_lesson(writer.finish()) as lesson:
-        parts = as_logged(list(lesson.parts()))
+    left_bytes = bytes(data[: len(data) - cut])
+    with TemporaryDirectory() as name:
+        left = Path(name) / f"changed{PART_SUFFIX}"
+        left.write_bytes(left_bytes)
+        try:
+            writer = reopen(left)
+        except UserError:
+            assert at < stages[0].end
+            assert left.read_bytes() == left_bytes
+            return
+        with open_lesson(writer.finish()) as lesson:
+            parts = as_logged(list(lesson.parts()))
+        kept = [path.read_bytes() for path in Path(name).glob(f"*{DAMAGED_SUFFIX}")]
     assert parts == list(PARTS[: len(parts)])
-    assert len(parts) >= sum(stage.end <= min(at, len(data) - cut) for stage in stages[1:])
+    assert len(parts) >= sum(stage.end <= min(at, len(left_bytes)) for stage in stages[1:])
+    if len(parts) < sum(stage.end <= len(left_bytes) for stage in stages[1:]):
+        assert kept == [left_bytes], "parts were lost without a copy"
 
 
 def test_at_the_start_every_lesson_that_was_left_is_finished_but_the_one_of_this_run(tmp_path: Path) -> None:
@@ -129,7 +137,7 @@ def test_at_the_start_every_lesson_that_was_left_is_finished_but_the_one_of_this
     goes_on.close()
     assert sorted(path.name for path in tmp_path.iterdir() if not path.name.startswith(index.NAME)) == [
         f"cut{SUFFIX}",
-        f"no-lesson{PART_SUFFIX}{DAMAGED_SUFFIX}",
+        f"no-lesson{DAMAGED_SUFFIX}",
         f"of-before{SUFFIX}",
         f"of-this-run{PART_SUFFIX}",
     ]
@@ -137,13 +145,93 @@ def test_at_the_start_every_lesson_that_was_left_is_finished_but_the_one_of_this
         assert as_logged(list(lesson.parts())) == list(PARTS[:2])
 
 
-def test_of_a_file_that_is_damaged_in_its_middle_the_whole_is_kept(tmp_path: Path) -> None:
-    name = f"large{PART_SUFFIX}"
+LENGTH_AT = 3
+"""Changed there, a record's length says that it goes on beyond the end of the file."""
+
+
+@pytest.mark.parametrize(
+    ("safe", "offset"), [(2, 100), (0, 100), (0, LENGTH_AT), (5, LENGTH_AT)], ids=["middle", "first", "first length", "last length"]
+)
+def test_of_a_file_that_is_damaged_the_whole_is_kept(tmp_path: Path, safe: int, offset: int) -> None:
+    data, stages = written()
+    require_kept(tmp_path, data, stages, stages[safe].end + offset, safe)
+
+
+@pytest.mark.parametrize("offset", [0, LENGTH_AT], ids=["kind", "length"])
+def test_of_a_file_that_is_damaged_before_its_first_chunk_the_whole_is_kept(tmp_path: Path, offset: int) -> None:
+    data, stages = written()
+    channel = next(place.start for place in walk(BytesIO(data)) if place.end == stages[0].end)
+    require_kept(tmp_path, data, stages, channel + offset, 0)
+
+
+def require_kept(folder: Path, data: bytes, stages: list[Contents], at: int, safe: int) -> None:
+    """Change a byte; the changed file must be kept, and so many parts come back."""
+    changed = bytearray(data[: stages[-1].end])
+    changed[at] ^= 0x40
+    (folder / f"changed{PART_SUFFIX}").write_bytes(changed)
+    assert recover(folder, run_ns=0) is None
+    (kept,) = folder.glob(f"*{DAMAGED_SUFFIX}")
+    assert kept.read_bytes() == changed
+    with open_lesson(folder / f"changed{SUFFIX}") as lesson:
+        assert as_logged(list(lesson.parts())) == list(PARTS[:safe])
+
+
+def test_of_a_lesson_that_was_only_cut_off_no_copy_is_made(tmp_path: Path) -> None:
+    data, stages = written()
+    (tmp_path / f"cut{PART_SUFFIX}").write_bytes(data[: stages[3].end - 7])
+    (tmp_path / f"begun{PART_SUFFIX}").write_bytes(data[: stages[1].end - 7])
+    recover(tmp_path, run_ns=0)
+    assert sorted(path.name for path in tmp_path.iterdir() if not path.name.startswith(index.NAME)) == [
+        f"begun{SUFFIX}",
+        f"cut{SUFFIX}",
+    ]
+
+
+def test_nothing_that_was_there_before_is_overwritten_by_what_is_recovered(tmp_path: Path) -> None:
     data, stages = written()
     changed = bytearray(data[: stages[-1].end])
     changed[stages[2].end + 100] ^= 1
-    (tmp_path / name).write_bytes(changed + bytes(3 * 2**20))
-    assert recover(tmp_path, run_ns=0) is None
-    assert (tmp_path / f"{name}{DAMAGED_SUFFIX}").read_bytes()[: len(changed)] == changed
-    with open_lesson(tmp_path / f"large{SUFFIX}") as lesson:
+    before = {f"a{SUFFIX}": b"copied", f"a{DAMAGED_SUFFIX}": b"of before", f"b{DAMAGED_SUFFIX}": b"too"}
+    for name, content in before.items():
+        (tmp_path / name).write_bytes(content)
+    (tmp_path / f"a{PART_SUFFIX}").write_bytes(changed)
+    (tmp_path / f"b{PART_SUFFIX}").write_bytes(b"nothing")
+    recover(tmp_path, run_ns=0)
+    assert {name: (tmp_path / name).read_bytes() for name in before} == before
+    assert (tmp_path / f"a-2{DAMAGED_SUFFIX}").read_bytes() == changed
+    assert (tmp_path / f"b-2{DAMAGED_SUFFIX}").read_bytes() == b"nothing"
+    with open_lesson(tmp_path / f"a-2{SUFFIX}") as lesson:
         assert as_logged(list(lesson.parts())) == list(PARTS[:2])
+    assert not list(tmp_path.glob(f"*{PART_SUFFIX}"))
+
+
+def test_an_unfinished_lesson_of_a_newer_kinebox_waits_for_the_update(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(lesson_header, "FORMAT", lesson_header.FORMAT + 1)
+    writer = LessonWriter.create(tmp_path, "newer", header())
+    writer.append(PARTS[0])
+    writer.close()
+    left = writer.path.read_bytes()
+    monkeypatch.undo()
+    assert recover(tmp_path, run_ns=0) is None
+    assert [path.read_bytes() for path in tmp_path.glob("newer*")] == [left]
+    assert writer.path.exists()
+    monkeypatch.setattr(lesson_header, "FORMAT", lesson_header.FORMAT + 1)
+    assert recover(tmp_path, run_ns=0) is None
+    with open_lesson(tmp_path / f"newer{SUFFIX}") as lesson:
+        assert as_logged(list(lesson.parts())) == [PARTS[0]]
+
+
+def test_recovery_unpacks_every_chunk_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    data, stages = written()
+    (tmp_path / f"cut{PART_SUFFIX}").write_bytes(data[: stages[-1].end])
+    unpacked = 0
+    decompressor = zstandard.ZstdDecompressor
+
+    def counting() -> zstandard.ZstdDecompressor:
+        nonlocal unpacked
+        unpacked += 1
+        return decompressor()
+
+    monkeypatch.setattr(zstandard, "ZstdDecompressor", counting)
+    recover(tmp_path, run_ns=0)
+    assert unpacked == len(PARTS)
