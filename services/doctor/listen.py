@@ -7,9 +7,9 @@ from typing import Literal
 
 from models.config.site import Site
 from models.messages import codec, topics
+from models.messages.addressed import read_health, read_observation
 from models.messages.health import Health
 from models.messages.motion import Motion
-from models.messages.observation import Observation
 from models.process import Bus, Delivery
 from services.doctor.agreement import Agreements
 from services.supervisor import page
@@ -56,11 +56,11 @@ class Heard:
                 self.live += 1
                 self.agreements.add_motion(codec.decode(delivery.payload, Motion))
             elif topic.endswith("/observation"):
-                observation = codec.decode(delivery.payload, Observation)
+                observation = read_observation(topic, delivery.payload)
                 self.epochs[observation.camera] = observation.epoch
                 self.agreements.add_observation(observation)
             else:
-                health = codec.decode(delivery.payload, Health)
+                health = read_health(topic, delivery.payload)
                 self.healths[health.process] = health
         except codec.CodecError:
             self.unreadable[topic] = self.unreadable.get(topic, 0) + 1

@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 from models.errors import UserError
 from models.messages import codec, topics
+from models.messages.addressed import read_health
 from models.messages.health import Health, RecorderHealth
 from models.messages.lesson import LessonRequest
 from models.process import RECORDER, Bus, Subscription
@@ -66,7 +67,7 @@ class Remote:
             if delivery is None:
                 break
             try:
-                health = codec.decode(delivery.payload, Health)
+                health = read_health(delivery.topic, delivery.payload)
             except codec.CodecError:
                 continue
             self._someone = True

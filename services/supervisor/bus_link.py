@@ -13,6 +13,7 @@ from services.support.heartbeat import beating_pid
 
 NAME = "supervisor"
 _KEEP = 4
+_AGAIN_S = 0.2
 
 
 def unread_healths(subscription: Subscription) -> list[Health]:
@@ -22,6 +23,15 @@ def unread_healths(subscription: Subscription) -> list[Health]:
         with contextlib.suppress(codec.CodecError):
             healths.append(read_health(delivery.topic, delivery.payload))
     return healths
+
+
+def unread_beats(subscription: Subscription) -> list[tuple[str, int]]:
+    """What a subscription to beats has for us now: processes with their ids. What is no beat is not counted as one."""
+    beats: list[tuple[str, int]] = []
+    while (delivery := subscription.receive(0.0)) is not None:
+        if (pid := beating_pid(delivery.payload)) is not None:
+            beats.append((topics.process_of(delivery.topic), pid))
+    return beats
 
 
 class BusLink:
@@ -49,12 +59,7 @@ class BusLink:
 
     def beats(self) -> list[tuple[str, int]]:
         """The processes, with their ids, whose loops have said since the last call that they go round."""
-        found: list[tuple[str, int]] = []
-        while self._beats is not None and (delivery := self._beats.receive(0.0)) is not None:
-            pid = beating_pid(delivery.payload)
-            if pid is not None:
-                found.append((topics.process_of(delivery.topic), pid))
-        return found
+        return [] if self._beats is None else unread_beats(self._beats)
 
     def say(
         self, fault: str, trouble: str, failed: dict[str, str], machine: MachineHealth | None, supervisor: SupervisorHealth
@@ -85,17 +90,23 @@ class BusLink:
             self._bus.close()
 
     def _open(self) -> None:
-        from services.bus.zenoh_bus import open_client  # noqa: PLC0415 - importing takes time in which processes can start
+        from services.bus.zenoh_bus import BusError, open_client  # noqa: PLC0415 - importing takes time in which processes can start
 
-        bus = open_client(self._endpoint, self._stop)
-        if bus is None:
-            return
-        self._subscription = bus.subscribe(topics.ALL_HEALTH, keep=_KEEP)
-        self._beats = bus.subscribe(topics.ALL_BEATS, keep=1)
+        # A link may break before all is declared on it. A supervisor that stayed deaf would take everybody for hung.
+        while self._bus is None and (bus := open_client(self._endpoint, self._stop)) is not None:
+            try:
+                self._join(bus)
+            except BusError:
+                bus.close()
+                self._stop.wait(_AGAIN_S)
+
+    def _join(self, bus: Bus) -> None:
+        subscription = bus.subscribe(topics.ALL_HEALTH, keep=_KEEP)
+        beats = bus.subscribe(topics.ALL_BEATS, keep=1)
         bus.watch_alive(topics.ALL_ALIVE, self._seen)
         bus.declare_alive(topics.alive(NAME))
         self._reporter = HealthReporter(NAME, bus, ResourceMeter())
-        self._bus = bus
+        self._subscription, self._beats, self._bus = subscription, beats, bus
 
     def _seen(self, topic: str, alive: bool) -> None:
         (self.present.add if alive else self.present.discard)(topics.process_of(topic))

@@ -6,15 +6,23 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import psutil
+import pytest
 
 from models.config.site import CameraConfig, Site
-from models.messages import codec
+from models.messages import codec, topics
 from models.messages.health import Health
 from models.process import Delivery, ProcessContext, Resources, Subscription
 from services.bus.keys import matches
-from tests.mutations.samples import RIG
+from tests.mutations.mutate import mutants, raw_mutants
+from tests.mutations.samples import RIG, by_topic
 
 MB = 2**20
+COUNTS = [
+    pytest.param(2_000, marks=[pytest.mark.slow, pytest.mark.timeout(300)]),
+    pytest.param(100_000, marks=[pytest.mark.mutations, pytest.mark.slow, pytest.mark.timeout(1800)]),
+]
+GROWTH_MB = 40.0
+"""Far less than a hundred thousand messages of 3 KB would take if they were kept."""
 
 
 class _Feed:
@@ -110,3 +118,12 @@ class Growth:
     def mb(self) -> float:
         """Resident memory more than then."""
         return self._process.memory_info().rss / MB - (self._base_mb or 0.0)
+
+
+def deliveries(topic: str, count: int, growth: Growth, seed: int = 1) -> Iterator[Delivery]:
+    """Mutants on a topic; from a tenth on, memory must not grow any more."""
+    made = raw_mutants if matches(topics.ALL_BEATS, topic) else mutants
+    for number, payload in enumerate(made(by_topic()[topic], seed, count)):
+        if number == count // 10:
+            growth.settled()
+        yield Delivery(topic, payload)

@@ -40,13 +40,28 @@ def hostile_bytes() -> list[bytes]:
 
 
 def mutants(samples: Sequence[bytes], seed: int, count: int) -> Iterator[bytes]:
-    """So many mutations of valid messages, all kinds in turn."""
+    """So many mutations of valid messages, all kinds in turn. The samples may be changed between two of them."""
+    kinds = (_flip, _cut, _splice, _repeat, _inject, _edit, _edit, _edit, _exchange, _damage_array, _damage_array)
+    return _mutants(kinds, samples, seed, count)
+
+
+def raw_mutants(samples: Sequence[bytes], seed: int, count: int) -> Iterator[bytes]:
+    """The same of bytes that are no message of the codec's."""
+    return _mutants((_flip, _cut, _splice, _repeat, _noise), samples, seed, count)
+
+
+_Kind = Callable[[Sequence[bytes], random.Random], bytes]
+
+
+def _mutants(kinds: Sequence[_Kind], samples: Sequence[bytes], seed: int, count: int) -> Iterator[bytes]:
     chance = random.Random(seed)  # noqa: S311 - no secret
-    kinds: tuple[Callable[[Sequence[bytes], random.Random], bytes], ...] = (
-        _flip, _cut, _splice, _repeat, _inject, _edit, _edit, _edit, _exchange, _damage_array, _damage_array,
-    )  # fmt: skip
     for number in range(count):
         yield kinds[number % len(kinds)](samples, chance)
+
+
+def _noise(_samples: Sequence[bytes], chance: random.Random) -> bytes:
+    texts = [str(value).encode() for value in hostile_values() if isinstance(value, (int, float, str))]
+    return chance.choice([*texts, *hostile_bytes(), "٤٢".encode(), chance.randbytes(chance.randrange(300))])
 
 
 def _flip(samples: Sequence[bytes], chance: random.Random) -> bytes:

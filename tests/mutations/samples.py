@@ -1,6 +1,7 @@
 """Valid messages of every topic of a small room, of which mutants are made and which must still be understood afterwards."""
 
 import time
+from typing import Literal
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from tests.synthetic.person import Person as Pupil
 
 RIG = ring_rig(4)
 JOINTS_M = Pupil().joints(1.0)
+KINDS: tuple[Literal["live", "smooth"], ...] = ("live", "smooth")
 
 
 def observation(index: int, t_ns: int, sequence: int = 0, epoch: int = 0) -> Observation:
@@ -31,10 +33,10 @@ def observation(index: int, t_ns: int, sequence: int = 0, epoch: int = 0) -> Obs
     return Observation(camera.name, epoch, sequence, sequence, t_ns, t_ns, "thunder", persons)
 
 
-def motion(t_ns: int, sequence: int = 0) -> Motion:
+def motion(t_ns: int, sequence: int = 0, kind: Literal["live", "smooth"] = "live") -> Motion:
     """The pupil, seen by all."""
     return Motion(
-        kind="live",
+        kind=kind,
         sequence=sequence,
         epoch=0,
         t_ns=t_ns,
@@ -84,9 +86,10 @@ def by_topic() -> dict[str, list[bytes]]:
     """Valid messages, encoded, by the topic that they belong to, as of now."""
     t_ns = time.monotonic_ns()
     found = {topics.observation(name): [codec.encode(observation(i, t_ns))] for i, name in enumerate(RIG.names)}
-    found[topics.motion("live")] = [codec.encode(motion(t_ns))]
+    found |= {topics.motion(kind): [codec.encode(motion(t_ns, kind=kind))] for kind in KINDS}
     found[topics.control(RIG.names[0])] = [codec.encode(control(t_ns))]
     found |= {topics.health(name): [codec.encode(health)] for name, health in healths(t_ns).items()}
+    found |= {topics.beat(name): [b"4711", b"1"] for name in ("fusion", "tablet")}
     found[topics.fusion_log()] = [codec.encode(log(t_ns))]
     found[topics.segment_request()] = [codec.encode(SegmentRequest(t_ns))]
     found[topics.lesson_request()] = [codec.encode(LessonRequest("start", "a lesson")), codec.encode(LessonRequest("stop"))]

@@ -1,7 +1,8 @@
 """Mutated messages on every topic and on the tablet's socket, through the code that receives them in each process.
 
-No crash, no growth, every refusal counted, and what is valid is understood as before. 100,000 a topic with `make test-mutations`,
-some thousand with `make test`.
+Here are the processes that make the figure, show it and record it; `test_listeners` has those that watch over them, and the law
+that nobody who receives is left out. No crash, no growth, every refusal counted, and what is valid is understood as before.
+100,000 a topic with `make test-mutations`, some thousand with `make test`.
 """
 
 import json
@@ -26,33 +27,15 @@ from models.process import Delivery
 from services.bus.mailbox import Mailbox
 from services.fusion.process import FusionLoop
 from services.lesson.process import RecorderLoop, lock
-from services.supervisor.bus_link import unread_healths
 from services.support.cpu import CpuMeter
-from services.support.heartbeat import beating_pid
 from services.tablet.process import decoded
 from services.tablet.room_state import RoomState
 from services.tablet.server import TabletServer
 from tests.browser.room import Room
 from tests.integration.waiting import until
-from tests.mutations.feed import FeedBus, Growth, context_of
-from tests.mutations.mutate import mutants
-from tests.mutations.samples import JOINTS_M, RIG, by_topic, control, healths, log, motion, observation
-
-COUNTS = [
-    pytest.param(2_000, marks=[pytest.mark.slow, pytest.mark.timeout(300)]),
-    pytest.param(100_000, marks=[pytest.mark.mutations, pytest.mark.slow, pytest.mark.timeout(1800)]),
-]
-GROWTH_MB = 40.0
-"""Far less than a hundred thousand messages of 3 KB would take if they were kept."""
-
-
-def deliveries(topic: str, count: int, growth: Growth, seed: int = 1) -> Iterator[Delivery]:
-    """Mutants on a topic; from a tenth on, memory must not grow any more."""
-    samples = by_topic()[topic]
-    for number, payload in enumerate(mutants(samples, seed, count)):
-        if number == count // 10:
-            growth.settled()
-        yield Delivery(topic, payload)
+from tests.mutations.consumers import topics_of
+from tests.mutations.feed import COUNTS, GROWTH_MB, FeedBus, Growth, context_of, deliveries
+from tests.mutations.samples import JOINTS_M, RIG, control, healths, log, motion, observation
 
 
 def filmed(enough: Callable[[], bool]) -> Iterator[Delivery]:
@@ -66,9 +49,7 @@ def filmed(enough: Callable[[], bool]) -> Iterator[Delivery]:
 
 
 @pytest.mark.parametrize("count", COUNTS)
-@pytest.mark.parametrize(
-    "topic", [topics.observation(RIG.names[0]), topics.health(f"edge-{RIG.names[0]}"), topics.segment_request()]
-)
+@pytest.mark.parametrize("topic", topics_of("services.fusion.process"))
 def test_fusion_survives_and_then_finds_the_pupil(topic: str, count: int, tmp_path: Path) -> None:
     stop, growth = threading.Event(), Growth()
 
@@ -88,10 +69,11 @@ def test_fusion_survives_and_then_finds_the_pupil(topic: str, count: int, tmp_pa
 
 
 @pytest.mark.parametrize("count", COUNTS)
-def test_a_cameras_plan_survives_and_the_next_true_one_is_obeyed(count: int) -> None:
+@pytest.mark.parametrize("topic", topics_of("edge.process"))
+def test_a_cameras_plan_survives_and_the_next_true_one_is_obeyed(topic: str, count: int) -> None:
     camera, growth, mailbox = RIG.names[0], Growth(), Mailbox(1)
     plan = Plan(mailbox, default_control(camera, 0, 4, 0, 30.0))
-    topic, problems = topics.control(camera), set[str]()
+    problems = set[str]()
     for delivery in deliveries(topic, count, growth):
         mailbox.put(topic, delivery.payload)
         obeyed = plan.at(time.monotonic_ns())
@@ -107,7 +89,7 @@ def test_a_cameras_plan_survives_and_the_next_true_one_is_obeyed(count: int) -> 
 
 
 @pytest.mark.parametrize("count", COUNTS)
-@pytest.mark.parametrize("topic", [topics.motion("live"), *(topics.health(name) for name in healths(0))])
+@pytest.mark.parametrize("topic", topics_of("services.tablet.process", every=True))
 def test_the_pages_server_survives_and_then_shows_what_is_true(topic: str, count: int) -> None:
     growth = Growth()
     server = TabletServer(RoomState("test", RIG.names, 30.0, time.monotonic_ns()), time.monotonic_ns)
@@ -202,22 +184,7 @@ def _json_mutants(texts: tuple[bytes, ...], count: int, chance: random.Random) -
 
 
 @pytest.mark.parametrize("count", COUNTS)
-def test_the_supervisor_survives_and_still_hears(count: int) -> None:
-    growth, mailbox, beats = Growth(), Mailbox(1), 0
-    topic = topics.health("fusion")
-    for delivery in deliveries(topic, count, growth):
-        mailbox.put(topic, delivery.payload)
-        unread_healths(mailbox)
-        beats += beating_pid(delivery.payload) is not None
-    assert beats == 0
-    true = healths(time.monotonic_ns())["fusion"]
-    mailbox.put(topic, codec.encode(true))
-    assert unread_healths(mailbox) == [true]
-    assert growth.mb < GROWTH_MB
-
-
-@pytest.mark.parametrize("count", COUNTS)
-@pytest.mark.parametrize("topic", [topics.fusion_log(), topics.lesson_request()])
+@pytest.mark.parametrize("topic", topics_of("services.lesson.process"))
 def test_the_recorder_survives_and_then_records(topic: str, count: int, tmp_path: Path) -> None:
     stop, growth = threading.Event(), Growth()
 
