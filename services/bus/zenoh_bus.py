@@ -20,6 +20,8 @@ from models.errors import UserError
 from models.process import Delivery, Subscription
 from services.bus.mailbox import Mailbox
 
+BusError = zenoh.ZError
+"""Something cannot be declared or said: the session is closed, or its router has just gone."""
 LEASE_MS = 2000
 """A peer that has been silent for so long is taken for dead. A process that was killed is noticed at once."""
 

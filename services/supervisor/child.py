@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import msgspec
@@ -52,17 +53,22 @@ class ChildSpec:
 
 def name_of(command: Sequence[str]) -> str | None:
     """The name on the bus of the process that has this command line; None if it is none of the box's."""
-    if _MODULE not in command:
-        return None
-    entry = command[command.index(_MODULE) + 1]
-    camera = command[command.index("--camera") + 1] if "--camera" in command else None
-    return process_name(entry, camera)
+    # Another command may well name the module: somebody looks for our processes.
+    entry = _word_after(_MODULE, command) if _word_after("-m", command) == _MODULE else None
+    return None if entry is None else process_name(entry, _word_after("--camera", command))
+
+
+def _word_after(word: str, command: Sequence[str]) -> str | None:
+    return next((after for before, after in pairwise(command) if before == word), None)
 
 
 class Child:
     """A running process and its output, of which both streams come in one pipe.
 
     It must be made on the main thread: the kernel ends it together with the thread that started it.
+
+    Raises:
+        OSError: the machine has no memory, process or descriptor left for it; nothing of it remains.
     """
 
     def __init__(self, command: list[str], environment: Mapping[str, str], niceness: int = 0, *, waits: bool = False) -> None:
@@ -75,13 +81,20 @@ class Child:
             stderr=subprocess.STDOUT,
             process_group=0,
         )
-        if niceness:
-            os.setpriority(os.PRIO_PROCESS, self.pid, os.getpriority(os.PRIO_PROCESS, 0) + niceness)
         assert self._process.stdout is not None  # noqa: S101 - it was asked for above
         self._output = self._process.stdout
-        os.set_blocking(self._output.fileno(), False)
+        try:
+            if niceness:
+                os.setpriority(os.PRIO_PROCESS, self.pid, os.getpriority(os.PRIO_PROCESS, 0) + niceness)
+            os.set_blocking(self._output.fileno(), False)
+            self._exit_fd = os.pidfd_open(self.pid)
+        except OSError:
+            # It runs, but nobody would ever hear of its end.
+            self._process.kill()
+            self._process.wait()
+            self._close_pipes()
+            raise
         self._partial = b""
-        self._exit_fd = os.pidfd_open(self.pid)
         self.user_error = ""
         """What the process told a person last, without its prefix."""
 
@@ -137,11 +150,14 @@ class Child:
 
     def close(self) -> None:
         """Let go of a process that has ended."""
+        self._close_pipes()
+        os.close(self._exit_fd)
+
+    def _close_pipes(self) -> None:
         if self._process.stdin is not None:
             with contextlib.suppress(BrokenPipeError):
                 self._process.stdin.close()
         self._output.close()
-        os.close(self._exit_fd)
 
     def _read(self) -> bytes:
         try:

@@ -21,19 +21,24 @@ class MachineWatch:
         self._measure = measure
         self._next_s = float("-inf")
         self._seen_s: dict[str, float] = {}
+        self._unreadable = ""
         self.newest: MachineHealth | None = None
+        """None before the first measurement, and while the machine cannot be measured."""
 
     @property
     def trouble(self) -> str:
         """All that is wrong now, in one line; empty if nothing is."""
-        return "; ".join(trouble.words for trouble in self._troubles())
+        return self._unreadable or "; ".join(trouble.words for trouble in self._troubles())
 
     def look(self, now_s: float) -> list[MachineTrouble]:
         """Measure if a second has passed, and return what a person has to be told of it for the first time."""
         if now_s < self._next_s:
             return []
         self._next_s = now_s + PERIOD_S
-        self.newest = self._measure()
+        try:
+            self.newest, self._unreadable = self._measure(), ""
+        except OSError as error:  # No descriptor is left, or no memory: the box must go on for as long as it can.
+            self.newest, self._unreadable = None, f"the machine cannot be measured ({error.strerror})"
         troubles = self._troubles()
         news = [trouble for trouble in troubles if now_s - self._seen_s.get(trouble.code, float("-inf")) > QUIET_S]
         self._seen_s |= {trouble.code: now_s for trouble in troubles}

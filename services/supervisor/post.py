@@ -25,7 +25,7 @@ class Post:
         given_up: why it was given up; empty if it was not.
         reported: the state that a person was last told.
         first_heard_s: when the running process spoke first, on CLOCK_MONOTONIC; None if it has not.
-        ended_s: when it ended last, on CLOCK_MONOTONIC; None if it never did.
+        ended_s: when it ended last or could not be started, on CLOCK_MONOTONIC; None if it never did.
         last_end: what became of it then, as a verb.
     """
 
@@ -65,10 +65,19 @@ class Post:
         self.child = None
         self.reported, self.first_heard_s = "ok", None
         why = "hung" if self.hangs else describe_exit(code)
-        self.ended_s, self.last_end = now_s, why
         if code == USER_ERROR_CODE and not self.hangs:
+            self.ended_s, self.last_end = now_s, why
             self.given_up = user_error or why
-            return
+        else:
+            self._failed(why, now_s, config)
+
+    def not_started(self, error: OSError, now_s: float, config: SupervisorConfig) -> None:
+        """The machine could not start the process: decide what becomes of the post, as if it had ended."""
+        self.start_at_s = None
+        self._failed(f"could not be started ({error.strerror})", now_s, config)
+
+    def _failed(self, why: str, now_s: float, config: SupervisorConfig) -> None:
+        self.ended_s, self.last_end = now_s, why
         decision = decide(self.history, now_s, config)
         match decision:
             case GiveUp(reason):

@@ -60,7 +60,11 @@ class Spares:
                 del self._waiting[spec.name]
                 self._not_before_s[spec.name] = now_s + AGAIN_AFTER_S
         elif healthy_since_s is not None and now_s >= max(healthy_since_s + AFTER_S, self._not_before_s.get(spec.name, 0.0)):
-            self._waiting[spec.name] = self._begin(spec)
+            try:
+                self._waiting[spec.name] = self._begin(spec)
+            except OSError as error:
+                self._not_before_s[spec.name] = now_s + AGAIN_AFTER_S
+                self._journal.say(f"a spare of {spec.name} could not be started ({error.strerror})", level="warning")
 
     def dismiss(self) -> None:
         """End all of them."""

@@ -146,8 +146,15 @@ class Supervisor:
         poller.poll(timeout_s * 1e3)
 
     def _start(self, post: Post) -> None:
-        post.manned_by(self._spares.take(post.name) or self._begin(post.spec, spare=False))
-        self._silence.start(post.name, time.monotonic())
+        now_s = time.monotonic()
+        try:
+            child = self._spares.take(post.name) or self._begin(post.spec, spare=False)
+        except OSError as error:  # The machine is short of something: those that run go on.
+            post.not_started(error, now_s, self._site.supervisor)
+            self._tell(post)
+            return
+        post.manned_by(child)
+        self._silence.start(post.name, now_s)
 
     def _start_others(self, link: BusLink, now_s: float) -> None:
         waiting = [post for post in self._posts if post.waits]
@@ -179,6 +186,10 @@ class Supervisor:
             post.child, self._over = None, True
             return
         post.ended(code, child.user_error, now_s, self._site.supervisor)
+        self._tell(post)
+
+    def _tell(self, post: Post) -> None:
+        """Of a post that fell vacant: whether it will be manned again."""
         if post.given_up:
             self._journal.say(f"{post.name} is given up: {post.given_up}", level="error")
             self._over = self._over or post.spec.entry == REPLAY  # There is nothing else to see.

@@ -16,7 +16,10 @@ _STATM = Path("/proc/self/statm")
 
 
 class ResourceMeter:
-    """CPU and memory of this process with all its threads. Each reading of the CPU covers the time since the one before."""
+    """CPU and memory of this process with all its threads. Each reading of the CPU covers the time since the one before.
+
+    Memory that cannot be read is NaN.
+    """
 
     def __init__(self) -> None:
         self._wall_s = time.monotonic()
@@ -27,8 +30,14 @@ class ResourceMeter:
         wall_s, cpu_s = time.monotonic(), time.process_time()
         elapsed_s, used_s = wall_s - self._wall_s, cpu_s - self._cpu_s
         self._wall_s, self._cpu_s = wall_s, cpu_s
-        pages = int(_STATM.read_text().split()[1])
-        return Resources(used_s / elapsed_s if elapsed_s > 0 else 0.0, pages * _PAGE_MB)
+        return Resources(used_s / elapsed_s if elapsed_s > 0 else 0.0, _resident_mb())
+
+
+def _resident_mb() -> float:
+    try:
+        return int(_STATM.read_text().split()[1]) * _PAGE_MB
+    except OSError:  # A process that has no descriptor left goes on without this figure.
+        return float("nan")
 
 
 class HealthReporter:

@@ -1,5 +1,6 @@
 """What is said of the machine: a full disk, a set clock and a hot processor must be found, and nothing that is not there."""
 
+import errno
 import os
 import re
 import time
@@ -157,6 +158,24 @@ def test_a_person_is_told_once_and_again_only_after_a_trouble_was_away() -> None
     watch.look(5.0)
     machine = msgspec.structs.replace(GOOD, memory_free_mb=10.0)
     assert len(watch.look(70.0)) == 1
+
+
+def test_a_machine_that_cannot_be_measured_is_a_trouble_and_no_end() -> None:
+    answers: list[MachineHealth | OSError] = [GOOD, OSError(errno.EMFILE, "Too many open files"), GOOD]
+
+    def measure() -> MachineHealth:
+        answer = answers.pop(0)
+        if isinstance(answer, OSError):
+            raise answer
+        return answer
+
+    watch = MachineWatch(measure)
+    watch.look(0.0)
+    assert watch.look(1.0) == []
+    assert watch.newest is None, "an old measurement would be taken for a new one"
+    assert watch.trouble == "the machine cannot be measured (Too many open files)"
+    assert watch.look(2.0) == []
+    assert watch.trouble == ""
 
 
 def test_the_machine_is_measured_once_a_second_and_not_with_every_look() -> None:

@@ -129,3 +129,16 @@ def test_a_page_on_every_network_is_found_on_this_machine_first() -> None:
 def test_a_process_is_known_by_its_command_line(spec: ChildSpec, tmp_path: Path) -> None:
     assert name_of(spec.command(tmp_path, tmp_path, 1)) == spec.name
     assert name_of(["/usr/bin/python3", "-m", "http.server"]) is None
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "grep services.cli.child",
+        "grep services.cli.child log",
+        "python -m services.cli.child",
+        "pgrep -af services.cli.child --camera",
+    ],
+)
+def test_somebody_who_looks_for_our_processes_is_none_of_them(command: str) -> None:
+    assert name_of(command.split()) is None
