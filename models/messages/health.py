@@ -36,7 +36,7 @@ class FusionHealth(msgspec.Struct, frozen=True):
 
     Attributes:
         live_hz: live motions published a second.
-        step_ms: CPU milliseconds of the core's steps for each tick, observations included.
+        step_ms: CPU milliseconds of the core for each tick, observations and the check that cameras agree included.
         cpu_load: share (0 to 1) of the CPU granted to the box that is in use.
         rejected: messages that could not be read.
         ignored: observations that were read but not fused, by camera.

@@ -6,7 +6,9 @@ pair is judged by itself, by the median distance from those lines over some seco
 largest group of pairs that agree are named, and whether exchanging two of them would make all agree.
 """
 
+import statistics
 from collections import deque
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -16,6 +18,7 @@ from models.arrays import Float
 from models.camera.rig import Rig
 from models.messages.observation import Observation
 from services.fusion.config import SightingConfig
+from services.fusion.epipolar import Couples, fundamentals
 from services.fusion.views import Sighting, Views, sightings
 
 TOLERANCE = 0.03
@@ -25,16 +28,27 @@ PERIOD_S = 0.25
 NEEDED, KEPT = 24, 40
 """Comparisons before a pair is judged, and those that it is judged by."""
 _MAX_GAP_S = 0.35
-_MIN_JOINTS = 6
 
 
-@dataclass(frozen=True, eq=False)
-class _Match:
-    """The two persons of two pictures who fit best: their joints (n, 2) in the pixels of either, at one instant."""
+class _Comparisons:
+    """The newest comparisons of two cameras: of each, the couple that fits best."""
 
-    first_px: Float
-    second_px: Float
-    distance: float
+    def __init__(self) -> None:
+        self.distances: deque[float] = deque(maxlen=KEPT)
+        self._couples: Couples | None = None
+
+    def add(self, couple: Couples, distance: float) -> None:
+        """One more."""
+        self.distances.append(distance)
+        self._couples = couple if self._couples is None else self._couples.and_then(couple, KEPT)
+
+    def agree(self) -> bool:
+        """Whether the two cameras do."""
+        return statistics.median(self.distances) < TOLERANCE
+
+    def would_agree(self, fundamental: Float) -> bool:
+        """Whether they would if that were their fundamental matrix."""
+        return self._couples is not None and float(np.median(self._couples.distances(fundamental))) < TOLERANCE
 
 
 @dataclass(frozen=True)
@@ -68,13 +82,12 @@ class Agreement:
 
     def __init__(self, rig: Rig, config: SightingConfig) -> None:
         self._views = Views.of(rig)
+        self._fundamentals = fundamentals(self._views)
         self._config = config
         self._newest: list[deque[tuple[float, tuple[Sighting, ...]]]] = [deque(maxlen=2) for _ in rig]
         self._epochs = [0] * len(self._views)
         self._compared_s: dict[tuple[int, int], float] = {}
-        self._matches: dict[tuple[int, int], deque[_Match]] = {
-            pair: deque(maxlen=KEPT) for pair in combinations(range(len(self._views)), 2)
-        }
+        self._compared = {pair: _Comparisons() for pair in combinations(range(len(self._views)), 2)}
 
     def observe(self, observation: Observation) -> None:
         """Compare a picture with those of the other cameras that were taken since this camera's last one."""
@@ -100,14 +113,14 @@ class Agreement:
 
     def judge(self) -> Disagreement | None:
         """Who does not agree; None while all do, or as long as it cannot be told."""
-        judged = {pair: self._distance(pair) < TOLERANCE for pair, seen in self._matches.items() if len(seen) >= NEEDED}
+        judged = {pair: seen.agree() for pair, seen in self._compared.items() if len(seen.distances) >= NEEDED}
         groups = _groups({camera for pair in judged for camera in pair}, [pair for pair, agree in judged.items() if agree])
         if len(groups) < 2:
             return None
         *smaller, largest = sorted(groups, key=len)
         tied = len(smaller[-1]) == len(largest)
         strangers = sorted(camera for group in groups for camera in group if tied or group is not largest)
-        exchanged = [two for two in combinations(strangers, 2) if self._would_agree(*two, list(judged))]
+        exchanged = [two for two in combinations(strangers, 2) if self._would_agree(*two, judged)]
         names = self._views.rig.names
         return Disagreement(tuple(names[i] for i in strangers), tuple((names[a], names[b]) for a, b in exchanged), tied)
 
@@ -128,51 +141,24 @@ class Agreement:
             if person.track in earlier
         ]
 
-    def _compare(self, pair: tuple[int, int], theirs: tuple[Sighting, ...], own: list[Sighting], *, swapped: bool) -> None:
+    def _compare(self, pair: tuple[int, int], theirs: Sequence[Sighting], own: Sequence[Sighting], *, swapped: bool) -> None:
         """Keep the pair of persons who fit best, if there is any pair that can be compared."""
-        first, second = (own, theirs) if swapped else (theirs, own)
-        matches = []
-        for one in first:
-            for two in second:
-                usable = one.usable & two.usable
-                if usable.sum() >= _MIN_JOINTS:
-                    points = one.points_px[usable], two.points_px[usable]
-                    matches.append(_Match(*points, epipolar_distance(self._fundamental(*pair), *points)))
-        if matches:
-            self._matches[pair].append(min(matches, key=lambda match: match.distance))
+        couples = Couples.of(own, theirs) if swapped else Couples.of(theirs, own)
+        if couples is not None:
+            distances = couples.distances(self._fundamentals[pair])
+            best = int(np.argmin(distances))
+            self._compared[pair].add(couples.one(best), float(distances[best]))
 
-    def _distance(self, pair: tuple[int, int]) -> float:
-        return float(np.median([match.distance for match in self._matches[pair]]))
-
-    def _would_agree(self, a: int, b: int, pairs: list[tuple[int, int]]) -> bool:
+    def _would_agree(self, a: int, b: int, judged: Mapping[tuple[int, int], bool]) -> bool:
         """Whether all pairs would agree if the pictures of two cameras were exchanged; keypoints keep their undistortion."""
+        touched = [pair for pair in judged if a in pair or b in pair]
+        if not all(agrees for pair, agrees in judged.items() if pair not in touched):
+            return False
         other = {a: b, b: a}
-        for pair in pairs:
-            fundamental = self._fundamental(other.get(pair[0], pair[0]), other.get(pair[1], pair[1]))
-            distances = [epipolar_distance(fundamental, match.first_px, match.second_px) for match in self._matches[pair]]
-            if np.median(distances) >= TOLERANCE:
-                return False
-        return True
-
-    def _fundamental(self, first: int, second: int) -> Float:
-        """(3, 3) of two cameras: joints x of the first lie on the line F x of the second (Hartley and Zisserman, 9.2.2)."""
-        from_first, to_second = self._views.projections[first], self._views.projections[second]
-        ex, ey, ez = to_second @ np.append(self._views.centres_m[first], 1.0)
-        cross = np.array(((0.0, -ez, ey), (ez, 0.0, -ex), (-ey, ex, 0.0)))
-        fundamental: Float = cross @ to_second @ np.linalg.pinv(from_first)
-        return fundamental
-
-
-def epipolar_distance(fundamental: Float, first_px: Float, second_px: Float) -> float:
-    """Median over joints (n, 2) of the larger distance from an epipolar line, as a share of the body's extent in that picture."""
-    first, second = (np.column_stack((points, np.ones(len(points)))) for points in (first_px, second_px))
-    in_second, in_first = first @ fundamental.T, second @ fundamental
-    product = np.abs(np.sum(second * in_second, axis=1))
-    shares = [
-        product / np.hypot(lines[:, 0], lines[:, 1]) / np.hypot(*np.ptp(points, axis=0))
-        for lines, points in ((in_second, second_px), (in_first, first_px))
-    ]
-    return float(np.median(np.maximum(*shares)))
+        return all(
+            self._compared[pair].would_agree(self._fundamentals[other.get(pair[0], pair[0]), other.get(pair[1], pair[1])])
+            for pair in touched
+        )
 
 
 def _groups(cameras: set[int], agreeing: list[tuple[int, int]]) -> list[set[int]]:

@@ -121,7 +121,6 @@ class FusionLoop:
                 observation = read_observation(delivery.topic, delivery.payload)
                 self._log.add("observation", now_ns, delivery.payload)
                 self._step(observation)
-                self._agreement.observe(observation)
                 return
             if delivery.topic == topics.segment_request():
                 self._begin_segment(codec.decode(delivery.payload, SegmentRequest), now_ns)
@@ -146,6 +145,8 @@ class FusionLoop:
     def _step(self, event: Observation | Tick) -> None:
         began_ns = time.thread_time_ns()
         self._state, output = step(self._state, event, self._config)
+        if isinstance(event, Observation):
+            self._agreement.observe(event)
         self._second.spent_ns += time.thread_time_ns() - began_ns
         self._found = output.found
         if isinstance(event, Tick):
@@ -191,7 +192,10 @@ class FusionLoop:
         used_cores = self._cpu.used_cores()
         if alive or self._governor.started or now_ns - self._began_ns > CAMERA_SILENT_NS:
             self._govern(Load(self._cpu.granted_cores, used_cores, tuple(alive.values())), now_ns)
-        reason = _trouble([name for name in self._names if name not in alive], ignored, second.rejected, self._agreement.judge())
+        judging_ns = time.thread_time_ns()
+        disagreement = self._agreement.judge()
+        self._second.spent_ns += time.thread_time_ns() - judging_ns
+        reason = _trouble([name for name in self._names if name not in alive], ignored, second.rejected, disagreement)
         fusion = FusionHealth(
             live_hz=second.live / seconds,
             step_ms=second.spent_ns * 1e-6 / max(second.ticks, 1),

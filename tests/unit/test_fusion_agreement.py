@@ -82,6 +82,22 @@ def test_nobody_is_blamed_before_there_is_enough_to_tell() -> None:
     assert empty.judge() is None
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_body_without_extent_neither_agrees_nor_contradicts() -> None:
+    gym = Gym(seconds=SECONDS)
+
+    def shrunk(picture: Observation) -> Observation:
+        points = [np.full_like(person.keypoints_px, 400.0) for person in picture.persons]
+        persons = (msgspec.structs.replace(one, keypoints_px=px) for one, px in zip(picture.persons, points, strict=True))
+        return msgspec.structs.replace(picture, persons=tuple(persons))
+
+    agreement = Agreement(gym.rig, SightingConfig())
+    for event in gym.events():
+        if isinstance(event, Observation):
+            agreement.observe(shrunk(event))
+    assert agreement.judge() is None
+
+
 def test_a_camera_that_is_put_right_is_no_longer_named() -> None:
     gym = Gym(seconds=SECONDS)
     agreement = Agreement(gym.rig, SightingConfig())
