@@ -13,6 +13,13 @@ from typing import Literal
 
 import msgspec
 
+from models.messages.observation import require_count
+
+EntryKind = Literal["observation", "tick", "motion", "health"]
+"""What a lesson is made of.
+
+"observation" and "tick" are fusion's input; "motion" (smooth) is its output; "health" is what a process said.
+"""
 MAX_TITLE = 80
 LEASE_NS = 10_000_000_000
 """Fusion stops the log when the request was not repeated for so long: the recorder is gone, or does not record any more."""
@@ -22,15 +29,18 @@ class Entry(msgspec.Struct, frozen=True, array_like=True):
     """One thing that fusion took in or gave out.
 
     Attributes:
-        kind: "observation" and "tick" are fusion's input; "motion" (smooth) is its output; "health" is what a process said.
+        kind: what it was.
         t_ns: CLOCK_MONOTONIC at which fusion took it in or gave it out; of a tick, when it was due, which may be earlier than
             the observation before it.
         payload: the message as it was on the bus; empty for a tick, whose time is `t_ns`.
     """
 
-    kind: Literal["observation", "tick", "motion", "health"]
+    kind: EntryKind
     t_ns: int
     payload: bytes
+
+    def __post_init__(self) -> None:
+        require_count("t_ns", self.t_ns)
 
 
 class FusionLog(msgspec.Struct, frozen=True):
@@ -46,6 +56,15 @@ class FusionLog(msgspec.Struct, frozen=True):
     sequence: int
     entries: tuple[Entry, ...]
 
+    def __post_init__(self) -> None:
+        require_count("segment_ns", self.segment_ns)
+        require_count("sequence", self.sequence)
+
+    @property
+    def latest_ns(self) -> int:
+        """The latest time in the part; no later than now, of a part that fusion made."""
+        return max([self.segment_ns, *(entry.t_ns for entry in self.entries)])
+
 
 class SegmentRequest(msgspec.Struct, frozen=True):
     """Begin with a new state, and log from there (recorder -> fusion).
@@ -55,6 +74,9 @@ class SegmentRequest(msgspec.Struct, frozen=True):
     """
 
     t_ns: int
+
+    def __post_init__(self) -> None:
+        require_count("t_ns", self.t_ns)
 
 
 class LessonRequest(msgspec.Struct, frozen=True):

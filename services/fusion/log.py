@@ -1,8 +1,6 @@
 """The log of what fusion takes in and gives out, in its order, for as long as somebody asks for it (`models.messages.lesson`)."""
 
-from typing import Literal
-
-from models.messages.lesson import LEASE_NS, Entry, FusionLog, SegmentRequest
+from models.messages.lesson import LEASE_NS, Entry, EntryKind, FusionLog, SegmentRequest
 
 PART_NS = 500_000_000
 """Length of a part. What fusion has not published when it dies is lost."""
@@ -42,7 +40,7 @@ class SegmentLog:
         self._begin_part(now_ns)
         return True
 
-    def add(self, kind: Literal["observation", "tick", "motion", "health"], t_ns: int, payload: bytes = b"") -> None:
+    def add(self, kind: EntryKind, t_ns: int, payload: bytes = b"") -> None:
         """Something was taken in or given out."""
         if self.running:
             self._entries.append(Entry(kind, t_ns, payload))

@@ -8,23 +8,19 @@ publish time is the entry's own time, its log time the latest of any entry until
 the observation that was taken in ahead of it, and log times must not go back.
 """
 
-from typing import Literal
-
 import msgspec
 from mcap.records import Channel, Schema
 
 from models.messages import codec, topics
-from models.messages.lesson import Entry
+from models.messages.lesson import Entry, EntryKind
 
 PROFILE = "kinebox"
 SUFFIX = ".mcap"
 PART_SUFFIX = ".mcap.part"
 """Of a file that is being written, or was when its recorder died."""
 
-Kind = Literal["observation", "tick", "motion", "health"]
-
 MARK = 1
-KINDS: dict[int, Kind] = {2: "observation", 3: "tick", 4: "motion", 5: "health"}
+KINDS: dict[int, EntryKind] = {2: "observation", 3: "tick", 4: "motion", 5: "health"}
 """Kinds of entries by number of their channel."""
 CHANNEL_OF = {kind: channel for channel, kind in KINDS.items()}
 
@@ -56,5 +52,5 @@ CHANNELS = (
 
 
 def entry(channel: int, t_ns: int, payload: bytes) -> Entry:
-    """The entry that a message holds; KeyError if its channel has none."""
+    """The entry that a message holds; KeyError if its channel has none, ValueError if there is no such time."""
     return Entry(KINDS[channel], t_ns, payload)

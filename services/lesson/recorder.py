@@ -102,6 +102,10 @@ class Recorder:
         running, now_ns = self._running, self._clock_ns()
         if running is None:
             return
+        if part.latest_ns > now_ns:
+            # It would date everything that comes after it, since times in a file never go back.
+            log.warning("part of fusion's log from the future left out", lesson=_name(running.writer), sequence=part.sequence)
+            return
         accepted = running.following.hear(part, now_ns)
         if accepted is None:
             return

@@ -173,3 +173,16 @@ def test_a_crop_that_is_no_region_is_refused_by_the_reader(side_px: float) -> No
     fields = {name: getattr(good, name) for name in ViewControl.__struct_fields__} | {"prediction": prediction}
     with pytest.raises(codec.CodecError, match="crop"):
         codec.decode(codec.encode(good)[:2] + codec._ENCODER.encode(fields), ViewControl)
+
+
+@pytest.mark.parametrize("value", [-5, 2**63])
+@pytest.mark.parametrize(
+    ("name", "field"),
+    [("fusion_log", "segment_ns"), ("fusion_log", "sequence"), ("fusion_log", "t_ns"), ("segment_request", "t_ns")],
+)
+def test_a_time_or_number_in_the_log_that_no_clock_gives_is_refused_by_the_reader(name: str, field: str, value: int) -> None:
+    good = examples()[name]
+    fields = {each: getattr(good, each) for each in type(good).__struct_fields__}
+    fields |= {"entries": [("tick", value, b"")]} if (name, field) == ("fusion_log", "t_ns") else {field: value}
+    with pytest.raises(codec.CodecError, match=field):
+        codec.decode(codec.encode(good)[:2] + codec._ENCODER.encode(fields), type(good))

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from models.config.site import LessonsConfig
-from models.messages.lesson import SegmentRequest
+from models.messages.lesson import Entry, FusionLog, SegmentRequest
 from services.lesson import recorder as module
 from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import LessonWriter
@@ -99,6 +99,7 @@ def test_the_same_request_is_repeated_so_that_fusion_goes_on(room: Room) -> None
 def test_a_lost_part_is_a_gap_in_the_file_and_a_new_segment_is_asked_for(room: Room) -> None:
     room.recorder.start("one")
     room.record(parts=2)
+    room.now_ns += SECOND_NS
     room.recorder.take(part(BEGIN_NS + 1, 3))
     request = room.recorder.look_after()
     assert request == SegmentRequest(room.now_ns)
@@ -108,6 +109,24 @@ def test_a_lost_part_is_a_gap_in_the_file_and_a_new_segment_is_asked_for(room: R
     (name,) = room.files(SUFFIX)
     with open_lesson(room.folder / name) as lesson:
         assert [item.gap for item in lesson.parts()] == ["", "", "a part of fusion's log was lost"]
+
+
+@pytest.mark.parametrize("wrong", ["an entry's time", "the segment's name"])
+def test_a_part_from_the_future_is_a_gap_and_does_not_date_what_comes_after_it(room: Room, wrong: str) -> None:
+    room.recorder.start("one")
+    room.record(parts=1)
+    room.now_ns += SECOND_NS // 2
+    good = part(BEGIN_NS + 1, 1)
+    late = Entry("tick", 2**62, b"")
+    bad = FusionLog(good.segment_ns, 1, (late, *good.entries)) if wrong == "an entry's time" else FusionLog(2**62, 0, good.entries)
+    room.recorder.take(bad)
+    room.recorder.take(good if wrong == "the segment's name" else part(BEGIN_NS + 1, 2))
+    room.record(parts=2)
+    assert room.recorder.health().recorded_s < 10
+    room.recorder.stop()
+    (name,) = room.files(SUFFIX)
+    with open_lesson(room.folder / name) as lesson:
+        assert lesson.summary().seconds < 10
 
 
 def test_when_fusion_is_not_heard_the_recorder_says_that_it_stands_still(room: Room) -> None:
@@ -143,6 +162,7 @@ def test_a_write_error_ends_the_lesson_and_what_was_safe_stays_readable(room: Ro
     def fail(*_: object) -> None:
         raise OSError(errno.EIO, "Input/output error")
 
+    room.now_ns += SECOND_NS
     with monkeypatch.context() as broken:
         broken.setattr("services.lesson.lesson_file.os.fsync", fail)
         room.recorder.take(part(BEGIN_NS + 1, 3))
