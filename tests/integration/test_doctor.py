@@ -10,7 +10,8 @@ import pytest
 
 from services.doctor.report import as_text
 from tests.integration.box import ROOT, Box
-from tests.integration.doctor_troubles import TROUBLES, examined
+from tests.integration.doctor_troubles import TROUBLES
+from tests.integration.doctor_troubles.trouble import examined
 from tests.integration.house import build_house
 from tests.integration.waiting import until
 

@@ -1,0 +1,75 @@
+"""Troubles of the cameras of a box that runs."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from services.doctor.finding import Examined
+from tests.integration import doctor_room, small_edge
+from tests.integration.box import Box, HealthWatch
+from tests.integration.doctor_troubles.running_box import running, until_told
+from tests.integration.doctor_troubles.trouble import SECOND_NS, Trouble, fault
+
+_EDGE = "tests.integration.small_edge:main"
+
+
+def _slow_for_a_while(box: Box) -> None:
+    with HealthWatch(box) as watch:
+        first = watch.wait_for("edge-b", "ok")
+        watch.wait_for("edge-b", "ok", after_ns=first.t_ns + 2 * SECOND_NS)
+
+
+@contextmanager
+def camera_moved(folder: Path) -> Iterator[Examined]:
+    with doctor_room.filmed(folder, calibration=doctor_room.turned("cam1", 4.0)) as room:
+        yield room.judged()
+
+
+@contextmanager
+def camera_of_another_loop(folder: Path) -> Iterator[Examined]:
+    with doctor_room.filmed(folder, late="cam2") as room:
+        yield room.judged()
+
+
+CAMERAS: dict[str, Trouble] = {
+    "a camera is silent": Trouble(
+        running(until_told("edge-b", "degraded"), more=fault("b", "stall"), edge=_EDGE),
+        "camera 'b'",
+        "camera 'b' is silent: it delivers no pictures",
+        "check its cable",
+    ),
+    "a camera is gone": Trouble(
+        running(until_told("edge-b", "degraded"), more=fault("b", "end"), edge=_EDGE),
+        "camera 'b'",
+        "camera 'b' is silent: it delivers no pictures .*",
+        "check its cable",
+    ),
+    "a camera's lens is covered": Trouble(
+        running(until_told("edge-b", "degraded"), edge=_EDGE, film=small_edge.write_black_film),
+        "camera 'b'",
+        "camera 'b' .*shows black pictures",
+        "take the cap off its lens",
+        "warning",
+    ),
+    "a camera falls behind": Trouble(
+        running(_slow_for_a_while, {"edge-b": "slow"}, edge=_EDGE),
+        "camera 'b'",
+        "camera 'b' falls behind: ",
+        "end other programs",
+        "warning",
+    ),
+    "a camera was moved": Trouble(
+        camera_moved,
+        "camera 'cam1'",
+        r"the calibration of camera 'cam1' is doubtful: \d+% of its view",
+        "calibrate it again",
+        "warning",
+    ),
+    "a camera shows another loop of its film": Trouble(
+        camera_of_another_loop,
+        "fusion",
+        "cam2 is not fused: its pictures are of a past epoch",
+        "count their films' loops differently",
+        "warning",
+    ),
+}
