@@ -7,17 +7,12 @@ so that interpolation can't fake them. No figure is measured across a seam of th
 """
 
 import argparse
-import contextlib
 import json
 import os
-import signal
 import statistics
-import subprocess
-import sys
 import threading
 import time
 from collections import Counter, defaultdict
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -32,9 +27,9 @@ from models.messages.health import Health
 from models.messages.motion import JointState
 from models.messages.observation import Observation
 from services.bus.zenoh_bus import open_client
-from services.supervisor.child import name_of
 from services.tablet import motion_frame
 from tests.bench.report import Report
+from tests.bench.running_box import CpuMeter, CpuUsed, processes, rss_mb, running_box
 
 WARM_S = 60
 MIN_JOINTS_SEEN = 9
@@ -85,45 +80,13 @@ class Memory:
 
     def take(self, box: psutil.Process, seconds: float) -> None:
         """One sample of every process of the box."""
-        self.samples.append((seconds, {name: process.memory_info().rss / 2**20 for name, process in processes(box).items()}))
+        self.samples.append((seconds, {name: rss_mb(process) for name, process in processes(box).items()}))
 
     def growth_pct(self) -> float:
         """Sum over all processes, the last minute over the second."""
         second = [sum(rss.values()) for at, rss in self.samples if 60 <= at < 120]
         last = [sum(rss.values()) for at, rss in self.samples if at >= self.samples[-1][0] - 60]
         return 100 * (statistics.mean(last) / statistics.mean(second) - 1) if second and last else float("nan")
-
-
-def processes(box: psutil.Process) -> dict[str, psutil.Process]:
-    """The box's processes by their name on the bus."""
-    found = {"supervisor": box}
-    for child in sorted(box.children(recursive=True), key=psutil.Process.create_time):
-        with contextlib.suppress(psutil.Error):
-            name = name_of(child.cmdline())
-            if name is not None:
-                found[name if name not in found else f"{name}-spare"] = child
-    return found
-
-
-@contextlib.contextmanager
-def running_box(site: Path, data: Path, cpus: set[int] | None) -> Iterator[psutil.Process]:
-    """`kinebox run` in a process group of its own, ended by SIGTERM."""
-    log = data / "bench" / "box.log"
-    log.parent.mkdir(parents=True, exist_ok=True)
-    with log.open("wb") as output:
-        command = [sys.executable, "-m", "services.cli.main", "run", "--site", str(site), "--data", str(data)]
-        if cpus is not None:
-            command = ["taskset", "-c", ",".join(map(str, sorted(cpus))), *command]
-        popen = subprocess.Popen(command, stdout=output, stderr=output, start_new_session=True)
-        try:
-            yield psutil.Process(popen.pid)
-        finally:
-            popen.terminate()
-            try:
-                popen.wait(15)
-            except subprocess.TimeoutExpired:
-                os.killpg(popen.pid, signal.SIGKILL)
-                raise
 
 
 def watch_page(url: str, heard: Heard, stop: threading.Event) -> None:
@@ -187,15 +150,14 @@ def measure(site_path: Path, data: Path, seconds: float, warm_s: float, cpus: se
             memory_until(box, memory, started, warm_s)
             for collected in (heard.motions, heard.frames, heard.stage_ms, heard.edge_total_ms, heard.plans, heard.backlog_ms):
                 collected.clear()
-            cpu_before, began = cpu_seconds(box), time.monotonic()
+            meter = CpuMeter(lambda: processes(box).values())
             memory_until(box, memory, started, warm_s + seconds)
-            elapsed = time.monotonic() - began
-            cpu = cpu_seconds(box) - cpu_before
+            used = meter.read()
         finally:
             stop.set()
             for listener in listeners:
                 listener.join(10)
-    return summary(heard, memory, elapsed, cpu)
+    return summary(heard, memory, used)
 
 
 def memory_until(box: psutil.Process, memory: Memory, started: float, end_s: float) -> None:
@@ -207,24 +169,18 @@ def memory_until(box: psutil.Process, memory: Memory, started: float, end_s: flo
         time.sleep(min(2.0, max(end_s - at, 0.0)))
 
 
-def cpu_seconds(box: psutil.Process) -> float:
-    """CPU used so far by all processes of the box."""
-    times = [process.cpu_times() for process in processes(box).values()]
-    return sum(t.user + t.system for t in times)
-
-
-def summary(heard: Heard, memory: Memory, elapsed_s: float, cpu_s: float) -> dict[str, float]:
+def summary(heard: Heard, memory: Memory, used: CpuUsed) -> dict[str, float]:
     """Figures under their fixed names."""
     poses = [motion for motion in heard.motions if motion.is_pose]
     latency = np.array([(motion.received_ns - motion.newest_ns) * 1e-6 for motion in poses])
-    fresh = {name: len(frames) / elapsed_s for name, frames in heard.frames.items()}
+    fresh = {name: len(frames) / used.seconds for name, frames in heard.frames.items()}
     figures = {
         "live_fps": between_seams_hz(heard.motions),
-        "live_fps.with_seams": len(poses) / elapsed_s,
-        "motions_per_s": len(heard.motions) / elapsed_s,
+        "live_fps.with_seams": len(poses) / used.seconds,
+        "motions_per_s": len(heard.motions) / used.seconds,
         "fresh_hz.min": min(fresh.values(), default=float("nan")),
         **{f"fresh_hz.{name}": rate for name, rate in sorted(fresh.items())},
-        "cpu_cores": cpu_s / elapsed_s,
+        "cpu_cores": used.cores,
         **{f"edge_ms.{stage}": statistics.mean(values) for stage, values in sorted(heard.stage_ms.items())},
         "edge_ms.total": statistics.mean(heard.edge_total_ms) if heard.edge_total_ms else float("nan"),
         **{f"plan_pct.{plan}": 100 * n / len(heard.plans) for plan, n in sorted(Counter(heard.plans).items())},

@@ -14,7 +14,6 @@ from itertools import cycle
 from pathlib import Path
 
 import msgspec
-import psutil
 
 from models.messages import codec
 from models.messages.lesson import Entry, FusionLog
@@ -22,8 +21,8 @@ from models.messages.observation import Observation
 from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_reader import LessonPart, open_lesson
-from tests.bench.box import processes, running_box
 from tests.bench.report import Report
+from tests.bench.running_box import CpuMeter, processes, rss_mb, running_box
 from tests.integration.waiting import free_port, until
 
 BARS = {
@@ -49,13 +48,13 @@ def record(site: Path, data: Path, folder: Path, seconds: float, warm_s: float) 
         time.sleep(warm_s)
         (part,) = folder.glob(f"*{PART_SUFFIX}")
         recorder = processes(box)["recorder"]
-        began_s, cpu_s, size = time.monotonic(), _cpu_s(recorder), part.stat().st_size
+        meter, size = CpuMeter(lambda: [recorder]), part.stat().st_size
         time.sleep(seconds)
-        elapsed_s = time.monotonic() - began_s
+        used = meter.read()
         figures = {
-            "recorder_cpu_pct": 100 * (_cpu_s(recorder) - cpu_s) / elapsed_s,
-            "recorder_rss_mb": recorder.memory_info().rss / 2**20,
-            "lesson_mb_45min": (part.stat().st_size - size) / elapsed_s * LESSON_S / 1e6,
+            "recorder_cpu_pct": 100 * used.cores,
+            "recorder_rss_mb": rss_mb(recorder),
+            "lesson_mb_45min": (part.stat().st_size - size) / used.seconds * LESSON_S / 1e6,
         }
     (lesson,) = folder.glob(f"*{SUFFIX}")
     return lesson, figures
@@ -105,11 +104,6 @@ def _with_persons(payloads: list[bytes], persons: int) -> Iterator[bytes]:
     for index, seen in enumerate(known):
         others = [known[index - step * len(known) // (persons + 1)].persons[0] for step in range(1, persons)]
         yield codec.encode(msgspec.structs.replace(seen, persons=(seen.persons[0], *others)))
-
-
-def _cpu_s(process: psutil.Process) -> float:
-    times = process.cpu_times()
-    return float(times.user + times.system)
 
 
 def main() -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import psutil
 
-from tests.bench.box import processes
+from tests.bench.running_box import processes, rss_mb
 from tests.installed import ROOT
 from tests.integration.waiting import free_port, until
 
@@ -82,11 +82,11 @@ class Box:
 
     def rss_mb(self) -> float:
         """Resident memory of all processes."""
-        total = 0
+        total = 0.0
         for process in [psutil.Process(self.process.pid), *self.descendants()]:
             with suppress(psutil.Error):
-                total += process.memory_info().rss
-        return total / 2**20
+                total += rss_mb(process)
+        return total
 
     def start_ns(self) -> int:
         """CLOCK_MONOTONIC from which the sources count."""
