@@ -23,7 +23,7 @@ from models.errors import UserError
 from services.logs.readable import as_json
 from services.logs.reader import Line
 from services.logs.record import encode, time_text
-from services.logs.redaction import redacted, redacted_text
+from services.logs.redaction import redacted, redacted_remains, redacted_text
 
 FORMAT_VERSION = 1
 _NAME_END = " <>=!~;["
@@ -91,7 +91,7 @@ def _pack(
 def _without_secrets(line: Line) -> str:
     record = line.record
     if record is None:
-        return as_json(line._replace(raw=redacted_text(line.raw.decode(errors="backslashreplace")).encode()))
+        return as_json(line._replace(raw=redacted_remains(line.raw.decode(errors="backslashreplace")).encode()))
     told = msgspec.structs.replace(
         record, event=redacted_text(record.event), fields=redacted(record.fields), exception=redacted_text(record.exception)
     )
