@@ -92,8 +92,12 @@ class LessonIndex:
         return sorted(found.values(), key=lambda row: (row.started_s, row.lesson), reverse=True)
 
     def note(self, writer: LessonWriter, path: Path) -> None:
-        """A lesson was finished: list it without reading its file."""
-        status = path.stat()
+        """A lesson was finished: list it without reading its file. If that fails, the next list reads the file."""
+        try:
+            status = path.stat()
+        except OSError as error:
+            self._cannot_write(error)
+            return
         header = writer.header
         row = LessonRow(
             lesson=name_of(path),
@@ -120,7 +124,9 @@ class LessonIndex:
                 connection.executemany("DELETE FROM lessons WHERE lesson = ?", gone)
                 connection.executemany(_REPLACE, new)
         except sqlite3.OperationalError as error:
-            log.warning("the index of lessons cannot be written", folder=str(self.folder), reason=str(error))
+            self._cannot_write(error)
+        except sqlite3.DatabaseError as error:
+            self._remove(error)
 
     def _found(self, known: dict[str, LessonRow]) -> Iterator[LessonRow]:
         for path in sorted(self.folder.glob(f"*{SUFFIX}")) + sorted(self.folder.glob(f"*{PART_SUFFIX}")):
@@ -137,16 +143,33 @@ class LessonIndex:
     def _connect(self) -> sqlite3.Connection:
         if self._memory is None:
             try:
-                return _connect(str(self.folder / NAME))
-            except sqlite3.OperationalError as error:
-                log.warning("the index of lessons cannot be written", folder=str(self.folder), reason=str(error))
+                return self._open_file()
             except sqlite3.DatabaseError as error:
-                log.warning("the index of lessons is made anew", folder=str(self.folder), reason=str(error))
-                for path in self.folder.glob(f"{NAME}*"):
-                    path.unlink(missing_ok=True)
-                return self._connect()
+                self._cannot_write(error)
             self._memory = _connect(":memory:")
         return self._memory
+
+    def _open_file(self) -> sqlite3.Connection:
+        file = str(self.folder / NAME)
+        try:
+            return _connect(file)
+        except sqlite3.OperationalError:
+            raise
+        except sqlite3.DatabaseError as error:
+            self._remove(error)
+            return _connect(file)
+
+    def _remove(self, reason: sqlite3.DatabaseError) -> None:
+        """Of a broken index nothing is needed."""
+        log.warning("the index of lessons is made anew", folder=str(self.folder), reason=str(reason))
+        try:
+            for path in self.folder.glob(f"{NAME}*"):
+                path.unlink(missing_ok=True)
+        except OSError as error:
+            self._cannot_write(error)
+
+    def _cannot_write(self, reason: Exception) -> None:
+        log.warning("the index of lessons cannot be written", folder=str(self.folder), reason=str(reason))
 
 
 def name_of(path: Path) -> str:

@@ -9,6 +9,7 @@ import os
 import struct
 import zlib
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
@@ -188,7 +189,8 @@ class LessonWriter:
         self._write(_summary(self._contents))
         self._file.close()
         finished = rename_free(self.path, self.path.name.removesuffix(PART_SUFFIX), SUFFIX)
-        sync_folder(finished.parent)
+        with suppress(OSError):  # If a power cut takes the new name away, the next start gives it again.
+            sync_folder(finished.parent)
         return finished
 
     def close(self) -> None:

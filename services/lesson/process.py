@@ -15,6 +15,7 @@ from services.lesson import origin
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.recorder import Recorder
 from services.lesson.recovery import recover
+from services.support.getting_ready import getting_ready
 from services.support.health import HealthReporter
 from services.support.machine import clocks_ns
 from services.support.site_toml import render
@@ -69,7 +70,9 @@ class RecorderLoop:
         self._reporter = HealthReporter(context.name, context.bus, context.resources)
         # Listening first, so that a wish that is uttered while lessons are recovered is not lost.
         self._subscription = self._bus.subscribe(topics.fusion_log(), topics.lesson_request(), keep=KEEP)
-        self._recorder = Recorder(folder, context.site.lessons, self._header, recover(folder, context.start_ns))
+        with getting_ready(context.name, self._bus):
+            unfinished = recover(folder, context.start_ns)
+        self._recorder = Recorder(folder, context.site.lessons, self._header, unfinished)
 
     def run(self) -> None:
         """Take what comes; once a second, ask fusion for its log while recording, and say how things are."""

@@ -168,12 +168,14 @@ class Recorder:
         if why:
             self._trouble(f"lesson {name} ended: {why}")
         try:
-            LessonIndex(self._folder).note(writer, writer.finish())
+            path = writer.finish()
         except OSError as error:
             writer.close()
             self._trouble(
                 f"lesson {name} ended: {error.strerror}; make room on the disk, and the next start of KineBox completes it"
             )
+        else:
+            LessonIndex(self._folder).note(writer, path)
         log.info("lesson ends", lesson=name, seconds=round(writer.recorded_s, 1), mb=round(writer.size / 1e6, 2), gaps=writer.gaps)
 
     def _trouble(self, text: str) -> None:

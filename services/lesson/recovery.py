@@ -154,7 +154,9 @@ def _name(path: Path) -> str:
 
 def _finish(writer: LessonWriter) -> None:
     try:
-        LessonIndex(writer.path.parent).note(writer, writer.finish())
+        path = writer.finish()
     except OSError as error:
         writer.close()
         log.warning("a recovered lesson could not be finished", lesson=writer.path.name, reason=str(error))
+    else:
+        LessonIndex(path.parent).note(writer, path)

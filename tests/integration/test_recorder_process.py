@@ -17,17 +17,21 @@ from models.camera.rig import encode_rig
 from models.config.site import BusConfig, LessonsConfig
 from models.errors import USER_ERROR_CODE
 from models.messages import codec, topics
+from models.messages.addressed import read_health
 from models.messages.health import Health, RecorderHealth
 from models.messages.lesson import FusionLog, LessonRequest
-from models.process import Bus
+from models.process import Bus, ProcessContext
+from services.bus.memory import MemoryRouter
 from services.bus.zenoh_bus import open_client, open_router
 from services.fusion.config import PRESETS
 from services.lesson.index import LessonIndex
 from services.lesson.lesson_reader import LessonPart, open_lesson
+from services.lesson.process import RecorderLoop
 from services.lesson.replay import compare, replay
+from services.support.health import ResourceMeter
 from services.support.site_toml import render
 from tests.integration.fusion_room import RIG, SITE, Cameras, fusion
-from tests.integration.waiting import free_port, until
+from tests.integration.waiting import DEADLINE_S, free_port, until
 
 pytestmark = pytest.mark.slow
 
@@ -231,3 +235,17 @@ def test_an_automatic_recorder_records_from_the_start_of_the_box(tmp_path: Path)
         process.send_signal(signal.SIGTERM)
         assert process.wait(30.0) == 0
         assert box.parts(lesson)
+
+
+def test_while_it_recovers_what_was_left_the_recorder_is_heard(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    router = MemoryRouter()
+    heard = router.open().subscribe(topics.health("recorder"), keep=1)
+
+    def recover(_folder: Path, _run_ns: int) -> None:
+        delivery = heard.receive(DEADLINE_S)
+        assert delivery is not None, "a supervisor would take this recorder for hung"
+        assert read_health(delivery.topic, delivery.payload).process == "recorder"
+
+    monkeypatch.setattr("services.lesson.process.recover", recover)
+    context = ProcessContext("recorder", None, SITE, RIG, tmp_path, 0, router.open(), threading.Event(), ResourceMeter())
+    RecorderLoop(context, tmp_path)

@@ -1,5 +1,6 @@
 """Lesson files: what was appended is read back, by us and by others, and what is no lesson is refused."""
 
+import errno
 from pathlib import Path
 
 import pytest
@@ -98,6 +99,20 @@ def test_a_name_that_is_taken_is_not_overwritten(tmp_path: Path) -> None:
     with pytest.raises(FileExistsError):
         LessonWriter.create(tmp_path, "lesson", header())
     writer.close()
+
+
+def test_a_finished_file_is_finished_even_if_its_new_name_cannot_be_made_safe(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    writer = LessonWriter.create(tmp_path, "lesson", header())
+    writer.append(PARTS[0])
+
+    def fail(_folder: Path) -> None:
+        raise OSError(errno.EIO, "Input/output error")
+
+    monkeypatch.setattr("services.lesson.lesson_file.sync_folder", fail)
+    with open_lesson(writer.finish()) as lesson:
+        assert lesson.summary().parts == 1
 
 
 def test_a_header_holds_any_title(tmp_path: Path) -> None:

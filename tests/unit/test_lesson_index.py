@@ -12,6 +12,7 @@ from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.recovery import recover
+from tests.synthetic.broken_index import break_index
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
 
 
@@ -100,6 +101,34 @@ def test_a_file_that_cannot_be_read_is_listed_with_its_problem(tmp_path: Path) -
     assert {row.state for row in damaged.values()} == {"damaged"}
     assert "is damaged" in damaged["a"].problem
     assert "is no lesson" in damaged["b"].problem
+
+
+@pytest.mark.parametrize("trouble", ["malformed", "locked", "folder gone"])
+def test_an_index_that_cannot_be_written_stops_nobody_who_has_finished_a_lesson(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, trouble: str
+) -> None:
+    folder = tmp_path / "lessons"
+    folder.mkdir()
+    writer = LessonWriter.create(folder, "a", header())
+    writer.append(part(BEGIN_NS, 0))
+    lessons, path = LessonIndex(folder), writer.finish()
+    lessons.lessons()
+    if trouble == "malformed":
+        break_index(folder)
+    elif trouble == "locked":
+        monkeypatch.setattr(index, "_PATIENCE_S", 0.01)
+        other = sqlite3.connect(folder / index.NAME, isolation_level=None)
+        other.execute("BEGIN EXCLUSIVE")
+    else:
+        path.unlink()
+        for left in folder.iterdir():
+            left.unlink()
+        folder.rmdir()
+    lessons.note(writer, path)
+    if trouble == "locked":
+        other.close()
+    if trouble != "folder gone":
+        assert [row.lesson for row in lessons.lessons()] == ["a"]
 
 
 def test_where_no_index_can_be_written_the_lessons_are_listed_all_the_same(tmp_path: Path) -> None:

@@ -9,12 +9,14 @@ import pytest
 from models.config.site import LessonsConfig
 from models.messages.lesson import Entry, FusionLog, SegmentRequest
 from services.lesson import recorder as module
+from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.lesson_reader import open_lesson
 from services.lesson.recorder import RETRY_NS, SILENT_NS, Recorder, lesson_name
 from services.lesson.recovery import recover
+from tests.synthetic.broken_index import break_index
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
 
 
@@ -170,6 +172,18 @@ def test_a_write_error_ends_the_lesson_and_what_was_safe_stays_readable(room: Ro
     assert room.recorder.health().lesson == ""
     assert room.files(PART_SUFFIX)
     assert recover(room.folder, run_ns=0) is None
+    (name,) = room.files(SUFFIX)
+    with open_lesson(room.folder / name) as lesson:
+        assert lesson.summary().parts == 3
+
+
+def test_trouble_with_the_list_of_lessons_is_no_trouble_of_a_lesson_that_is_finished(room: Room) -> None:
+    LessonIndex(room.folder).lessons()
+    break_index(room.folder)
+    room.recorder.start("one")
+    room.record(parts=3)
+    room.recorder.stop()
+    assert room.recorder.trouble == ""
     (name,) = room.files(SUFFIX)
     with open_lesson(room.folder / name) as lesson:
         assert lesson.summary().parts == 3
