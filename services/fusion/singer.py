@@ -9,6 +9,9 @@ import numpy as np
 from models.arrays import Bool, Float
 from models.compiled import compiled
 
+_SMALLEST_PIVOT = 1e-16
+"""Share of its diagonal that a pivot keeps where rounding leaves nothing of it; see `triangulation`."""
+
 
 @compiled
 def _transition(dt: float, acceleration_memory: float, velocity_memory: float) -> Float:
@@ -199,6 +202,19 @@ def separations2(points: Float, spreads: Float, state: Float, covariance: Float)
             for m in range(3):
                 spread[k, m] = spreads[j, k, m] + covariance[j, k, m]
             spread[k, k] += 1e-6
-        apart = points[j] - state[j, :3]
-        out[j] = (apart * np.linalg.solve(spread, apart)).sum()
+        out[j] = distance2(spread, points[j] - state[j, :3])
     return out
+
+
+@compiled
+def distance2(spread: Float, apart: Float) -> float:
+    """Squared length in sigmas of a vector (3,), by the factors L D L^T of its covariance (Golub and Van Loan, 4.1.2)."""
+    first = spread[0, 0]
+    l10, l20 = spread[1, 0] / first, spread[2, 0] / first
+    second = max(spread[1, 1] - l10 * spread[1, 0], _SMALLEST_PIVOT * spread[1, 1])
+    l21 = (spread[2, 1] - l20 * spread[1, 0]) / second
+    third = max(spread[2, 2] - l20 * spread[2, 0] - l21 * l21 * second, _SMALLEST_PIVOT * spread[2, 2])
+    b = apart[1] - l10 * apart[0]
+    c = apart[2] - l20 * apart[0] - l21 * b
+    squared: float = apart[0] * apart[0] / first + b * b / second + c * c / third
+    return squared

@@ -17,6 +17,8 @@ from services.fusion.views import Views
 
 _MIN_PARALLAX2 = 0.05**2
 """Squared sine of the smallest angle (3 degrees) between rays that can propose a point."""
+_SMALLEST_PIVOT = 1e-16
+"""Share of its diagonal that a pivot keeps where rounding leaves nothing of it, so that there is always an answer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,6 +178,33 @@ def _propose(
 
 
 @compiled
+def invert(matrix: Float, inverse: Float) -> None:
+    """Fill the inverse of a symmetric positive definite (3, 3) matrix, by its factors L D L^T (Golub and Van Loan, 4.1.2)."""
+    first = matrix[0, 0]
+    l10, l20 = matrix[1, 0] / first, matrix[2, 0] / first
+    second = max(matrix[1, 1] - l10 * matrix[1, 0], _SMALLEST_PIVOT * matrix[1, 1])
+    l21 = (matrix[2, 1] - l20 * matrix[1, 0]) / second
+    third = max(matrix[2, 2] - l20 * matrix[2, 0] - l21 * l21 * second, _SMALLEST_PIVOT * matrix[2, 2])
+    m20 = l10 * l21 - l20  # of the inverse of L, whose other entries are -l10 and -l21
+    inverse[0, 0] = 1.0 / first + l10 * l10 / second + m20 * m20 / third
+    inverse[1, 1] = 1.0 / second + l21 * l21 / third
+    inverse[2, 2] = 1.0 / third
+    inverse[0, 1] = inverse[1, 0] = -l10 / second - m20 * l21 / third
+    inverse[0, 2] = inverse[2, 0] = m20 / third
+    inverse[1, 2] = inverse[2, 1] = -l21 / third
+
+
+@compiled
+def _newton_step(normal: Float, gradient: Float, inverse: Float, step: Float) -> float:
+    """Fill the step that solves `normal` x step = gradient; returns its length."""
+    invert(normal, inverse)
+    for k in range(3):
+        step[k] = inverse[k, 0] * gradient[0] + inverse[k, 1] * gradient[1] + inverse[k, 2] * gradient[2]
+    length: float = np.sqrt(step[0] ** 2 + step[1] ** 2 + step[2] ** 2)
+    return length
+
+
+@compiled
 def _refine(
     projections: Float,
     pixels: Float,
@@ -190,6 +219,7 @@ def _refine(
 ) -> None:
     """Gauss-Newton on the robust cost, in place."""
     jacobian, normal, gradient = np.empty((2, 3)), np.empty((3, 3)), np.empty(3)
+    inverse, step = np.empty((3, 3)), np.empty(3)
     for _ in range(iterations):
         normal[:] = 0.0
         gradient[:] = 0.0
@@ -214,8 +244,7 @@ def _refine(
                 normal[k, k] += weight
         for k in range(3):
             normal[k, k] += 1e-3
-        step = np.linalg.solve(normal, gradient)
-        length = np.sqrt(step[0] ** 2 + step[1] ** 2 + step[2] ** 2)
+        length = _newton_step(normal, gradient, inverse, step)
         shrink = min(1.0, max_step / max(length, 1e-12))
         for k in range(3):
             point[k] += shrink * step[k]
@@ -267,5 +296,5 @@ def triangulate_joints(
         for k in range(3):
             normal[k, k] += 1e-3
         points[j] = point
-        covariance[j] = np.linalg.inv(normal)
+        invert(normal, covariance[j])
     return points, covariance, inliers, count

@@ -42,6 +42,17 @@ def test_no_kernel_calls_one_of_another_file_whose_change_the_cache_would_not_se
             assert called & names <= set(functions), f"{path.name}: {function.name} calls {called & names - set(functions)}"
 
 
+@pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.name)
+def test_no_kernel_calls_lapack_or_blas_which_copy_small_matrices_and_come_through_scipy(folder: Path) -> None:
+    for path in folder.glob("*.py"):
+        for function in _compiled_functions(ast.parse(path.read_text())).values():
+            nodes = list(ast.walk(function))
+            called = {node.attr for node in nodes if isinstance(node, ast.Attribute)} & {"linalg", "dot", "vdot", "inner", "outer"}
+            product = any(isinstance(node, (ast.BinOp, ast.AugAssign)) and isinstance(node.op, ast.MatMult) for node in nodes)
+            assert not called, f"{path.name}: {function.name} uses np.{called.pop()}"
+            assert not product, f"{path.name}: {function.name} multiplies matrices with @"
+
+
 @pytest.mark.slow
 def test_the_doctor_knows_what_numba_has_compiled_for_this_code_and_this_processor(tmp_path: Path) -> None:
     def run(program: str, **more: str) -> str:
