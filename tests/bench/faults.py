@@ -26,8 +26,9 @@ from services.bus.zenoh_bus import open_client
 from services.lesson.lesson_reader import open_lesson
 from tests.bench.losses import Span, lost_s
 from tests.bench.report import Report
-from tests.faults.box import ISOLATED, Box, may_mount, running
+from tests.faults.box import ISOLATED, Box, running
 from tests.faults.client import Client
+from tests.faults.disk import may_mount
 from tests.faults.drills import DRILLS, Outcome, Stage, faults_of_site, may_set_clock
 from tests.faults.traces import Before, left_behind
 

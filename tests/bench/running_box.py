@@ -13,6 +13,8 @@ from typing import NamedTuple
 import psutil
 
 from services.supervisor.child import name_of
+from tests.installed import ROOT
+from tests.lifeline import bound
 
 
 class CpuUsed(NamedTuple):
@@ -66,10 +68,10 @@ def running_box(site: Path, data: Path, cpus: set[int] | None) -> Iterator[psuti
     log = data / "bench" / "box.log"
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("wb") as output:
-        command = [sys.executable, "-m", "services.cli.main", "run", "--site", str(site), "--data", str(data)]
+        command = [sys.executable, "-m", "services.cli.main", "run", "--site", str(site.resolve()), "--data", str(data.resolve())]
         if cpus is not None:
             command = ["taskset", "-c", ",".join(map(str, sorted(cpus))), *command]
-        popen = subprocess.Popen(command, stdout=output, stderr=output, start_new_session=True)
+        popen = subprocess.Popen(bound(command), cwd=ROOT, stdout=output, stderr=output, start_new_session=True)
         try:
             yield psutil.Process(popen.pid)
         finally:

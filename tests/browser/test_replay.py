@@ -13,6 +13,7 @@ from services.supervisor.page import answers
 from tests.browser.test_page import AXE, Shown
 from tests.installed import ROOT
 from tests.integration.waiting import free_port, until
+from tests.lifeline import bound
 from tests.synthetic.gym import Gym
 from tests.synthetic.gym_lesson import write_gym_lesson
 
@@ -28,7 +29,10 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     folder = tmp_path_factory.mktemp("lesson")
     lesson, port = write_gym_lesson(folder, Gym(seconds=8.0)), free_port()
     command = [sys.executable, "-m", "services.cli.main", "replay", str(lesson), "--port", str(port), "--data", str(ROOT / "build")]
-    with (folder / "output").open("wb") as output, subprocess.Popen(command, cwd=ROOT, stdout=output, stderr=output) as process:
+    with (
+        (folder / "output").open("wb") as output,
+        subprocess.Popen(bound(command), cwd=ROOT, stdout=output, stderr=output) as process,
+    ):
         try:
             page = TabletConfig(host="127.0.0.1", port=port)
             until(lambda: answers(page) or process.poll() is not None, "the page of the replay", STARTING_S)

@@ -14,14 +14,15 @@ from pathlib import Path
 import psutil
 
 from tests.bench.running_box import processes, rss_mb
+from tests.faults.disk import small_disk
 from tests.installed import ROOT
 from tests.integration.waiting import free_port, until
+from tests.lifeline import bound
 
 SHIPPED = ROOT / "deploy/sites/footage"
 STARTING_S = 120.0
 """A machine that has never compiled the kernels compiles them now."""
 ENDING_S = 30.0
-DISK_MB = 256
 ISOLATED = "[supervisor]\nmax_restarts = 5\nwindow_s = 8\n[lessons]\nleast_free_mb = 50\n"
 """Drills come one after the other; each is a fault of its own and not part of a storm."""
 
@@ -126,7 +127,7 @@ def _started(folder: Path, site: Path, installed: Path, port: int, bus_port: int
     fill_data_folder(folder / "data", installed)
     command = [sys.executable, "-m", "services.cli.main", "run", "--site", str(site), "--data", str(folder / "data")]
     with (folder / "output").open("wb") as output:
-        process = subprocess.Popen(command, cwd=ROOT, stdout=output, stderr=output, start_new_session=True)
+        process = subprocess.Popen(bound(command), cwd=ROOT, stdout=output, stderr=output, start_new_session=True)
     box = Box(process, folder, port, bus_port)
     try:
         until(lambda: box.answers() or process.poll() is not None, "the page's server", STARTING_S)
@@ -134,24 +135,6 @@ def _started(folder: Path, site: Path, installed: Path, port: int, bus_port: int
         yield box
     finally:
         end(box)
-
-
-def may_mount(folder: Path) -> bool:
-    """Whether a file system can be mounted here."""
-    with suppress(subprocess.CalledProcessError, FileNotFoundError), small_disk(folder / "probe"):
-        return True
-    return False
-
-
-@contextmanager
-def small_disk(folder: Path) -> Iterator[None]:
-    """A file system of `DISK_MB` in memory."""
-    folder.mkdir()
-    subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={DISK_MB}m", "tmpfs", str(folder)], check=True, capture_output=True)
-    try:
-        yield
-    finally:
-        subprocess.run(["umount", "--lazy", str(folder)], check=True)
 
 
 def end(box: Box) -> None:

@@ -13,8 +13,9 @@ import psutil
 import pytest
 
 from services.bus.zenoh_bus import open_client
-from tests.faults.box import ISOLATED, may_mount, running
+from tests.faults.box import ISOLATED, running
 from tests.faults.client import Client
+from tests.faults.disk import may_mount
 from tests.faults.drills import DRILLS, RECOVERS_WITHIN_S, VICTIM, Stage, faults_of_site, may_set_clock
 from tests.faults.traces import Before, left_behind
 from tests.installed import require_footage, require_networks

@@ -13,6 +13,7 @@ from models.messages import codec, topics
 from models.messages.health import Health
 from services.bus.zenoh_bus import open_client
 from tests.integration.waiting import free_port, until
+from tests.lifeline import bound
 
 ROOT = Path(__file__).parents[2]
 NAMES = ("fusion", "edge-a", "edge-b", "tablet", "recorder")
@@ -91,7 +92,7 @@ class Box:
         self.output = folder / "stdout"
         with self.errors.open("w") as errors, self.output.open("w") as output:
             self.process = subprocess.Popen(
-                [sys.executable, "-m", "services.cli.main", "run", "--site", str(self.site), "--data", str(self.data)],
+                bound([sys.executable, "-m", "services.cli.main", "run", "--site", str(self.site), "--data", str(self.data)]),
                 env=fake_parts(folder, edge=edge),
                 stdout=output,
                 stderr=errors,

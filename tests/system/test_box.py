@@ -23,6 +23,7 @@ from services.tablet import motion_frame
 from services.tablet.motion_frame import MotionFrame
 from tests.installed import ROOT, require_footage, require_networks
 from tests.integration.waiting import free_port, until
+from tests.lifeline import bound
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(240)]
 
@@ -71,7 +72,7 @@ def running(folder: Path, more_site: str = "") -> Iterator[Box]:
     (folder / "site.toml").write_text((SHIPPED / "site.toml").read_text() + more + more_site)
     command = [sys.executable, "-m", "services.cli.main", "run", "--site", str(folder / "site.toml"), "--data", str(data)]
     with (folder / "output").open("wb") as output:
-        process = subprocess.Popen(command, cwd=ROOT, stdout=output, stderr=output)
+        process = subprocess.Popen(bound(command), cwd=ROOT, stdout=output, stderr=output)
     box = Box(process, port)
     try:
         until(lambda: box.answers() or process.poll() is not None, "the page's server", STARTING_S)
