@@ -1,6 +1,5 @@
 """Listens to a running box: on its bus, and whether its page answers."""
 
-import threading
 import time
 from dataclasses import dataclass, field
 from typing import Literal
@@ -10,7 +9,8 @@ from models.messages import codec, topics
 from models.messages.addressed import read_health, read_observation
 from models.messages.health import Health
 from models.messages.motion import Motion
-from models.process import Bus, Delivery
+from models.process import Delivery
+from services.bus.join import join
 from services.doctor.agreement import Agreements
 from services.supervisor import page
 
@@ -78,7 +78,7 @@ def listen(site: Site, expected: frozenset[str]) -> Heard:
         expected: names of the processes that should speak; when all have, listening ends early.
     """
     heard = Heard(page="answers" if page.answers(site.tablet, _PAGE_S) else "silent")
-    bus = _join(site.bus.endpoint)
+    bus = join(site.bus.endpoint, _JOIN_S)
     if bus is None:
         return heard
     heard.bus = "answers"
@@ -94,16 +94,3 @@ def listen(site: Site, expected: frozenset[str]) -> Heard:
     finally:
         bus.close()
     return heard
-
-
-def _join(endpoint: str) -> Bus | None:
-    """A client on the bus; None if the router does not answer in time, as one that hangs: its port accepts and nothing follows."""
-    from services.bus.zenoh_bus import open_client  # noqa: PLC0415 - a machine on which it cannot be imported is examined, too
-
-    stop = threading.Event()
-    joined: list[Bus | None] = []
-    opener = threading.Thread(target=lambda: joined.append(open_client(endpoint, stop)), name="bus", daemon=True)
-    opener.start()
-    opener.join(_JOIN_S)
-    stop.set()
-    return joined[0] if joined else None

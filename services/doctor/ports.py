@@ -8,9 +8,10 @@ import psutil
 
 from models.config.site import Site
 from models.errors import UserError
+from services.bus.endpoint import split_endpoint
 from services.doctor.finding import Examined, Fact, Finding, fault_of
 from services.doctor.processes import RunningBox
-from services.supervisor.preflight import require_ports, split_endpoint
+from services.supervisor.preflight import require_ports
 from services.support.listening import listen
 
 

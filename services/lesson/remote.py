@@ -4,7 +4,6 @@ A request is only heard if the bus has already connected both sides, and nobody 
 health says that it was done.
 """
 
-import threading
 import time
 from collections.abc import Callable
 
@@ -14,6 +13,7 @@ from models.messages.addressed import read_health
 from models.messages.health import Health, RecorderHealth
 from models.messages.lesson import LessonRequest
 from models.process import RECORDER, Bus, Subscription
+from services.bus import join as bus_join
 
 CONNECT_S = 3.0
 HEARD_WITHIN_S = 5.0
@@ -109,17 +109,11 @@ def join(endpoint: str) -> Bus:
     """A place on the bus of the box that runs.
 
     Raises:
-        UserError: none answers.
+        UserError: none runs, or it does not answer.
     """
-    from services.bus.zenoh_bus import open_client  # noqa: PLC0415 - a wrong word on the command line shall not wait for it
-
-    too_long = threading.Event()
-    timer = threading.Timer(CONNECT_S, too_long.set)
-    timer.start()
-    try:
-        bus: Bus | None = open_client(endpoint, too_long)
-    finally:
-        timer.cancel()
+    bus = bus_join.join(endpoint, CONNECT_S)
+    if bus is None and bus_join.accepts(endpoint):
+        raise UserError(f"the box at {endpoint} does not answer; 'kinebox doctor' says what hangs, or end it and start it again")
     if bus is None:
         raise UserError(f"no box runs at {endpoint}; start it with 'kinebox run', or name the site file of the one that runs")
     return bus

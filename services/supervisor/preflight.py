@@ -9,6 +9,7 @@ from models.camera.rig import Rig
 from models.config.site import Site
 from models.errors import UserError
 from models.process import Check
+from services.bus.endpoint import split_endpoint
 from services.support.listening import listen
 from services.support.site_files import read_site
 
@@ -46,14 +47,6 @@ def require_ports(site: Site) -> None:
     # Somebody else's, or the page's own?
     bus.hold().close()
     raise UserError(f"port {bus.number} is both the page's and the bus's; change tablet.port or bus.endpoint in the site file")
-
-
-def split_endpoint(endpoint: str) -> tuple[str, int]:
-    """Host and port of the bus; UserError if the port is none."""
-    host, _, port = endpoint.removeprefix("tcp/").rpartition(":")
-    if not 0 < int(port) < 2**16:
-        raise UserError(f"port of the bus: {port} is no port (1 to 65535); change bus.endpoint in the site file")
-    return host.strip("[]"), int(port)
 
 
 class _Port(NamedTuple):

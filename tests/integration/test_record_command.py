@@ -101,6 +101,19 @@ def test_without_a_box_or_without_its_recorder_there_is_one_line(tmp_path: Path)
         assert "the box's recorder is not heard" in refusal(record(box))
 
 
+def test_a_box_that_hangs_is_told_from_one_that_does_not_run(tmp_path: Path) -> None:
+    box = Box(tmp_path, LessonsConfig())
+    command = [sys.executable, "-m", "tests.integration.bus_member", "router", box.room.endpoint, "gym/alive/fusion"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT) as router:
+        try:
+            assert router.stdout is not None
+            assert router.stdout.readline() == "ready\n"
+            router.send_signal(signal.SIGSTOP)
+            assert f"the box at {box.room.endpoint} does not answer" in refusal(record(box))
+        finally:
+            router.kill()
+
+
 def test_a_disk_too_full_is_told_with_the_key_that_says_how_full(tmp_path: Path) -> None:
     with Box(tmp_path, LessonsConfig(least_free_mb=1_000_000)).running() as box, box.recorder():
         assert "lessons.least_free_mb is 1000000" in refusal(record(box))
