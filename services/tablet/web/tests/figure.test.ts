@@ -1,6 +1,8 @@
+import { Color } from 'three';
 import { describe, expect, it } from 'vitest';
 import { complete, showsSomebody, standing, unsure } from '../src/figure/pose';
 import { Figure } from '../src/figure/figure';
+import { BODY, DRAWN, LEFT, RIGHT, SKIN, VISOR } from '../src/figure/materials';
 import { Joint, STANDING_M } from '../src/figure/skeleton';
 import { JointState, type MotionFrame } from '../src/protocol/motionFrame';
 import { facingRad } from '../src/stage/framing';
@@ -88,5 +90,16 @@ describe('the figure', () => {
     figure.group.traverse((part) => {
       expect(part.matrix.elements.every(Number.isFinite)).toBe(true);
     });
+  });
+});
+
+describe('the colours', () => {
+  const saturation = (color: Color): number => color.getHSL({ h: 0, s: 0, l: 0 }).s;
+  const palettes = Object.entries({ BODY, LEFT, RIGHT, SKIN, VISOR, DRAWN });
+
+  it.each(palettes)('of %s are grey where it is not sure, and only there', (_name, palette) => {
+    expect(saturation(palette.seen.color)).toBeGreaterThan(0.5);
+    expect(saturation(palette.guessed.color)).toBeLessThan(0.1);
+    expect(saturation(palette.unknown.color)).toBeLessThan(0.1);
   });
 });

@@ -20,5 +20,5 @@ export const LEFT = palette(0x63a6ea);
 export const RIGHT = palette(0x3168b4);
 export const SKIN = palette(0x5490da);
 export const VISOR = palette(0x1c3763);
-/** Hands and feet are drawn along, not measured: they never take part in the colours. */
-export const DRAWN = palette(0x434d5c);
+/** Hands and feet are drawn along, not measured. Dark, but no grey: a forearm that was seen must not end in a hand that looks unsure. */
+export const DRAWN = palette(0x1b4390);
