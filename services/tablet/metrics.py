@@ -14,6 +14,7 @@ from prometheus_client.exposition import CONTENT_TYPE_PLAIN_0_0_4
 from prometheus_client.registry import Collector
 
 from models.messages.health import Health
+from models.process import RECORDER, ROUTER
 from services.support.machine_troubles import MachineCode
 from services.tablet.messages import CameraState, CameraStatus, MachineStatus, ProcessState, ProcessStatus, Status
 
@@ -55,10 +56,14 @@ class RoomCollector(Collector):
         yield from _room(status)
         yield from _each("camera", get_args(CameraState), status.cameras, _CAMERA_GAUGES, _CAMERA_COUNTERS)
         yield from _stages(healths)
-        yield from _fusion(healths)
+        yield from _fusion(_said_by(ROUTER, healths))
         yield from _each("process", get_args(ProcessState), status.processes, _PROCESS_GAUGES, _PROCESS_COUNTERS)
         yield from _machine(status.machine)
-        yield from _recorder(healths)
+        yield from _recorder(_said_by(RECORDER, healths))
+
+
+def _said_by(process: str, healths: list[Health]) -> Health | None:
+    return next((health for health in healths if health.process == process), None)
 
 
 def _gauge(name: str, text: str, value: float | None) -> Metric:
@@ -149,8 +154,8 @@ def _stages(healths: list[Health]) -> Iterator[Metric]:
     yield stages
 
 
-def _fusion(healths: list[Health]) -> Iterator[Metric]:
-    fusion = next((health.fusion for health in healths if health.fusion), None)
+def _fusion(health: Health | None) -> Iterator[Metric]:
+    fusion = health.fusion if health else None
     yield _gauge("fusion_live_hertz", "Live figures a second that fusion made.", fusion.live_hz if fusion else None)
     yield _gauge("fusion_step_cpu_seconds", "CPU time of fusion for each figure.", fusion.step_ms * 1e-3 if fusion else None)
     yield _gauge(
@@ -195,8 +200,8 @@ def _machine(machine: MachineStatus | None) -> Iterator[Metric]:
     yield trouble
 
 
-def _recorder(healths: list[Health]) -> Iterator[Metric]:
-    recorder = next((health.recorder for health in healths if health.recorder), None)
+def _recorder(health: Health | None) -> Iterator[Metric]:
+    recorder = health.recorder if health else None
     running = recorder if recorder and recorder.lesson else None
     yield _gauge("recorder_recording", "1 while a lesson is recorded.", float(running is not None) if recorder else None)
     yield _gauge("recorder_safe_seconds", "Length of the lesson that is safe on disk.", running.recorded_s if running else None)

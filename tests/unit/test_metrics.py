@@ -121,6 +121,16 @@ def test_figures_that_are_none_have_no_sample() -> None:
     assert not [key for key, value in samples(room).items() if not math.isfinite(value)]
 
 
+def test_what_another_process_says_in_the_name_of_fusion_or_the_recorder_is_not_measured() -> None:
+    room = full_room()
+    own = samples(room)
+    room.hear("edge-a", fusion=FusionHealth(1.0, 1.0, 1.0, 1, {}, "found"), recorder=RecorderHealth("", "", 1.0, 1.0, 9))
+    read = samples(room)
+    assert {key: value for key, value in read.items() if key[0].startswith(("kinebox_fusion", "kinebox_recorder"))} == {
+        key: value for key, value in own.items() if key[0].startswith(("kinebox_fusion", "kinebox_recorder"))
+    }
+
+
 def test_machine_troubles_are_named() -> None:
     room = full_room()
     room.hear("supervisor", machine=msgspec.structs.replace(MACHINE, disk_free_mb=50.0))
