@@ -10,16 +10,15 @@ from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
 
-from packaging.requirements import Requirement
 from packaging.specifiers import SpecifierSet
 
 from services import tablet
 from services.doctor.finding import Examined, Fact, Finding
 from services.support.environment import process_environment
+from services.support.requirements import DISTRIBUTION, installed_version, required_packages
 from services.support.version import kinebox_version
 
 PAGE = Path(tablet.__file__).parent / "web" / "dist"
-_DISTRIBUTION = "kinebox"
 _CHILD_S = 120.0
 _ASSET = re.compile(r'(?:src|href)="/(assets/[^"]+)"')
 
@@ -70,7 +69,7 @@ class Installation:
 def gather_installation(data: Path, page: Path = PAGE) -> Installation:
     """Look at what this Python has, importing every package once in processes of their own."""
     python = ".".join(map(str, sys.version_info[:3]))
-    wanted = metadata.metadata(_DISTRIBUTION)["Requires-Python"]
+    wanted = metadata.metadata(DISTRIBUTION)["Requires-Python"]
     kernels, lacking, problem = _kernels(data)
     return Installation(
         version=kinebox_version(),
@@ -154,15 +153,10 @@ def _judge_kernels(installation: Installation) -> list[Finding]:
 
 
 def _packages() -> tuple[Package, ...]:
-    requirements = [Requirement(line) for line in metadata.requires(_DISTRIBUTION) or ()]
-    needed = [each for each in requirements if each.marker is None or each.marker.evaluate({"extra": ""})]
     modules = {name: module for module, names in metadata.packages_distributions().items() for name in map(_canonical, names)}
     found = []
-    for requirement in needed:
-        try:
-            installed: str | None = metadata.version(requirement.name)
-        except metadata.PackageNotFoundError:
-            installed = None
+    for requirement in required_packages():
+        installed = installed_version(requirement.name)
         fits = installed is not None and requirement.specifier.contains(installed, prereleases=True)
         found.append(Package(requirement.name, str(requirement.specifier), installed, fits))
     problems = _import({module: name for name in (each.name for each in found) if (module := modules.get(_canonical(name)))})

@@ -14,6 +14,7 @@ from models.messages.health import MachineHealth
 from services.doctor.finding import Examined, Fact, Finding, Level
 from services.support.machine import MachineMeter, Sensors
 from services.support.machine_troubles import MachineCode, machine_troubles, size_of
+from services.support.processor import processor
 
 _LEVEL: dict[MachineCode, Level] = {"disk_full": "fault", "memory_low": "fault", "hot": "fault"}
 """The other troubles are warnings."""
@@ -61,12 +62,12 @@ class MachineFacts:
 def gather_machine(data: Path, sensors: Sensors) -> MachineFacts:
     """Look at this machine."""
     wall_ns, _ = sensors.clocks_ns()
-    name, flags = _processor(Path("/proc/cpuinfo"))
+    found = processor()
     return MachineFacts(
         health=MachineMeter(data, sensors)(),
-        processor=name,
+        processor=found.name or "unknown processor",
         architecture=platform.machine(),
-        flags=flags,
+        flags=frozenset(found.features),
         cores=os.cpu_count() or 1,
         memory_mb=psutil.virtual_memory().total / 2**20,
         wall=dt.datetime.fromtimestamp(wall_ns * 1e-9, dt.UTC),
@@ -151,16 +152,3 @@ def _try_folder(data: Path) -> str:
     except OSError as error:
         return f"cannot be used: {error.strerror}"
     return ""
-
-
-def _processor(cpuinfo: Path) -> tuple[str, frozenset[str]]:
-    """Name and abilities of the first processor in /proc/cpuinfo."""
-    entries: dict[str, str] = {}
-    try:
-        for line in cpuinfo.read_text().splitlines():
-            key, _, value = line.partition(":")
-            entries.setdefault(key.strip(), value.strip())
-    except OSError:
-        pass
-    name = entries.get("model name") or entries.get("Model") or "unknown processor"
-    return name, frozenset((entries.get("flags") or entries.get("Features") or "").split())

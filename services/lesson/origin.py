@@ -10,17 +10,18 @@ import zlib
 from importlib.metadata import version
 from pathlib import Path
 
+from services.support.processor import Processor, processor
+
 _LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")
 _ROOT = Path(__file__).parents[2]
 _CODE = ("models/*.py", "models/camera/*.py", "models/messages/*.py", "models/skeleton/*.py", "services/fusion/*.py")
 _SEPARATOR = "; "
-_CPUINFO = Path("/proc/cpuinfo")
 
 
 def machine() -> str:
     """This machine and what is installed on it, as `LessonHeader.machine` keeps it: facts with semicolons between them."""
     libraries = [f"{name} {version(name)}" for name in _LIBRARIES]
-    return _SEPARATOR.join([_processor(_CPUINFO), f"Python {platform.python_version()}", *libraries, f"fusion code {_code(_ROOT)}"])
+    return _SEPARATOR.join([_told(processor()), f"Python {platform.python_version()}", *libraries, f"fusion code {_code(_ROOT)}"])
 
 
 def differences(recorded: str, here: str) -> list[str]:
@@ -36,16 +37,11 @@ def differences(recorded: str, here: str) -> list[str]:
     return [f"recorded with {was}, this is {is_now}" for was, is_now in zip(before, now, strict=True) if was != is_now]
 
 
-def _processor(cpuinfo: Path) -> str:
+def _told(found: Processor) -> str:
     """The processor's name, and its features as a check sum: a virtual machine may hide some of them."""
-    try:
-        lines = [line.partition(":") for line in cpuinfo.read_text().splitlines()]
-    except OSError:
-        lines = []
-    facts = {key.strip(): value.strip() for key, _, value in reversed(lines)}
-    name = facts.get("model name") or facts.get("Model") or platform.machine()
-    features = sorted((facts.get("flags") or facts.get("Features") or "").split())
-    return f"{name.replace(_SEPARATOR, ', ')}, features {zlib.crc32(' '.join(features).encode()):08x}"
+    name = found.name or platform.machine()
+    features = " ".join(sorted(found.features))
+    return f"{name.replace(_SEPARATOR, ', ')}, features {zlib.crc32(features.encode()):08x}"
 
 
 def _code(root: Path) -> str:

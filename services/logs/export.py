@@ -11,7 +11,6 @@ import os
 import platform
 import zipfile
 from collections.abc import Iterable
-from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 from typing import Any
 
@@ -24,9 +23,11 @@ from services.logs.readable import as_json
 from services.logs.reader import Line
 from services.logs.record import encode, time_text
 from services.logs.redaction import redacted, redacted_remains, redacted_text
+from services.support.processor import processor
+from services.support.requirements import installed_version, required_packages
+from services.support.version import kinebox_version
 
 FORMAT_VERSION = 1
-_NAME_END = " <>=!~;["
 
 
 def export(file: Path, lines: Iterable[Line], site_toml: str | None, query: dict[str, Any], now: dt.datetime) -> dict[str, Any]:
@@ -122,16 +123,9 @@ class _Counts:
 
 def _versions() -> dict[str, str]:
     """Of KineBox, Python, the site file's schema and every package that KineBox asks for and finds."""
-    found = {"kinebox": version("kinebox"), "python": platform.python_version(), "site_schema": str(SITE_VERSION)}
-    for requirement in requires("kinebox") or ():
-        name = requirement
-        for end in _NAME_END:
-            name = name.partition(end)[0]
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            continue  # An extra that is not installed.
-    return found
+    found = {"kinebox": kinebox_version(), "python": platform.python_version(), "site_schema": str(SITE_VERSION)}
+    packages = {requirement.name: installed_version(requirement.name) for requirement in required_packages()}
+    return found | {name: version for name, version in packages.items() if version is not None}
 
 
 def _machine() -> dict[str, Any]:
@@ -139,18 +133,9 @@ def _machine() -> dict[str, Any]:
     return {
         "system": platform.platform(),
         "architecture": platform.machine(),
-        "processor": _processor(),
+        "processor": processor().name,
         "cores": os.cpu_count(),
         "granted_cores": len(os.sched_getaffinity(0)),
         "memory_mb": psutil.virtual_memory().total // 2**20,
         "up_since": time_text(dt.datetime.fromtimestamp(psutil.boot_time(), dt.UTC)),
     }
-
-
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        return ""
-    names = [line.partition(":")[2].strip() for line in lines if line.startswith(("model name", "Model"))]
-    return names[0] if names else ""

@@ -14,6 +14,8 @@ import psutil
 from rich.console import Console
 from rich.table import Table
 
+from services.support.processor import processor
+
 _COMPARISONS: dict[str, Callable[[float, float], bool]] = {
     ">=": lambda value, bar: value >= bar,
     "<=": lambda value, bar: value <= bar,
@@ -68,10 +70,7 @@ class Report:
 
 def machine() -> str:
     """Processor, cores in use and system, in one line."""
-    names = [
-        line.split(":", 1)[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")
-    ]
-    name = names[0] if names else platform.machine()
+    name = processor().name or platform.machine()
     cores = len(psutil.Process().cpu_affinity() or [])
     return f"{name}, {cores} cores, Python {platform.python_version()}"
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from services.lesson import origin
+from services.support.processor import processor
 
 PI = "processor : 0\nFeatures : fp asimd\nprocessor : 1\nFeatures : fp asimd\nModel : Raspberry Pi 5 Model B\n"
 XEON = "processor : 0\nmodel name : Xeon; odd\nflags : fpu avx2 sse\n"
@@ -32,10 +33,10 @@ def test_a_record_of_another_form_is_told_as_a_whole() -> None:
 def test_a_processor_is_its_name_and_its_features(tmp_path: Path, text: str, name: str) -> None:
     file = tmp_path / "cpuinfo"
     file.write_text(text)
-    told = origin._processor(file)
+    told = origin._told(processor(file))
     assert told.startswith(f"{name}features ")
     file.write_text(text.replace("asimd", "").replace("avx2", ""))
-    assert origin._processor(file) != told, "a feature that is hidden changes what is compiled"
+    assert origin._told(processor(file)) != told, "a feature that is hidden changes what is compiled"
 
 
 def test_any_change_of_the_code_shows(tmp_path: Path) -> None:

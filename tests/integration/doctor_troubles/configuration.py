@@ -36,7 +36,7 @@ CONFIGURATION: dict[str, Trouble] = {
         broken(lambda house: replace_text(house.site, f"tcp/127.0.0.1:{house.bus_port}", f"tcp/127.0.0.1:{house.page_port}")),
         "ports",
         "is both the page's and the bus's",
-        r"change tablet\.port or bus\.endpoint|correct it",
+        r"^change tablet\.port or bus\.endpoint in the site file$",
     ),
     "the page's address is none of this machine's": Trouble(
         broken(lambda house: replace_text(house.site, 'host = "127.0.0.1"', 'host = "192.0.2.99"')),
