@@ -5,7 +5,7 @@ from models.messages.lesson import LEASE_NS, Entry, EntryKind, FusionLog, Segmen
 PART_NS = 500_000_000
 """Length of a part. What fusion has not published when it dies is lost."""
 MAX_PART_BYTES = 1 << 20
-"""A part is published early rather than grow beyond this, however much comes in."""
+"""A part that has reached this is published early, at the next tick; it is larger by what came in since the last one."""
 
 
 class SegmentLog:

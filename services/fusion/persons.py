@@ -17,7 +17,7 @@ from services.fusion.association import Hypothesis, PersonSearch, median_distanc
 from services.fusion.candidates import Candidates
 from services.fusion.config import FusionConfig
 from services.fusion.joint_filter import Expectation
-from services.fusion.pupil import Pupil
+from services.fusion.person_estimates import PersonEstimates
 from services.fusion.views import Sighting, Views
 
 NOBODY: Final = -1
@@ -33,7 +33,7 @@ class Known:
     """
 
     number: int
-    estimates: Pupil
+    estimates: PersonEstimates
 
 
 class Persons:
@@ -71,7 +71,7 @@ class Persons:
         for found in search.everyone():
             self._unclaimed.difference_update(found.slots.values())
             if not any(_same(found, known, t_s, config) for known in self.people):
-                self.people += (Known(self._next, Pupil(self._views, t_s, found.joints, config)),)
+                self.people += (Known(self._next, PersonEstimates(self._views, t_s, found.joints, config)),)
                 self._next += 1
 
 

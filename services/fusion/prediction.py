@@ -8,7 +8,7 @@ from models.camera.pinhole import Camera
 from models.messages.control import CropPrediction
 from models.messages.observation import Crop
 from models.skeleton.trunk import lean_rad
-from services.fusion.pupil import Pupil
+from services.fusion.person_estimates import PersonEstimates
 
 _MARGIN: Final = 1.3
 """Side of the crop over the extent of the joints: crown and toes reach beyond them, and a prediction errs."""
@@ -21,7 +21,7 @@ _REACH: Final = 4.0
 _VELOCITY_SPAN_S: Final = 0.05
 
 
-def predict_crop(pupil: Pupil, camera: Camera, t_ns: int) -> CropPrediction | None:
+def predict_crop(pupil: PersonEstimates, camera: Camera, t_ns: int) -> CropPrediction | None:
     """The pupil's crop in one camera at an instant; None if it is not known, or out of the picture."""
     t_s = t_ns * 1e-9
     joints_m, known = pupil.skeleton(t_s)

@@ -9,7 +9,7 @@ from models.arrays import Float
 from services.fusion.association import Familiar, Hypothesis, PersonSearch
 from services.fusion.candidates import Candidates
 from services.fusion.config import FusionConfig
-from services.fusion.pupil import Pupil
+from services.fusion.person_estimates import PersonEstimates
 from services.fusion.views import Sighting, Views
 
 _CHECK_EVERY = 3
@@ -28,7 +28,7 @@ class Reconstruction:
 
     def __init__(self, epoch: int, views: Views, familiar: Familiar = frozenset()) -> None:
         self.epoch = epoch
-        self.pupil: Pupil | None = None
+        self.pupil: PersonEstimates | None = None
         self.first_s = np.inf
         self.newest_s: Float = np.full(len(views), -np.inf)
         self._views = views
@@ -78,7 +78,7 @@ class Reconstruction:
         if len(best.slots) == len(self._views) or now - self.first_s >= config.association.patience_s:
             self.pupil = self._begin(best, now, config)
 
-    def _challenge(self, pupil: Pupil, now: float, config: FusionConfig) -> None:
+    def _challenge(self, pupil: PersonEstimates, now: float, config: FusionConfig) -> None:
         """Choose anew if somebody elsewhere has been seen by more cameras for long."""
         supporters = pupil.cameras_since(now - config.association.max_age_s)
         if supporters == len(self._views):
@@ -93,11 +93,11 @@ class Reconstruction:
             self.pupil = self._begin(best, now, config)
             self._challenged_s = np.inf
 
-    def _elsewhere(self, person: Hypothesis, pupil: Pupil, now: float, config: FusionConfig) -> bool:
+    def _elsewhere(self, person: Hypothesis, pupil: PersonEstimates, now: float, config: FusionConfig) -> bool:
         apart = person.centre_m - pupil.body.at(now)[:3]
         return float(np.linalg.norm(apart)) > 2 * config.association.person_gate_m
 
-    def _begin(self, chosen: Hypothesis, now: float, config: FusionConfig) -> Pupil:
+    def _begin(self, chosen: Hypothesis, now: float, config: FusionConfig) -> PersonEstimates:
         """Start the estimates as far back as two cameras saw the chosen person, and fuse what was seen since."""
         slots = frozenset(chosen.slots.values())
         seen = self._candidates.since(slots, now - config.association.lookback_s)
@@ -106,7 +106,7 @@ class Reconstruction:
         earlier = PersonSearch(self._views, self._candidates, start, config, slots).best(self._familiar)
         if earlier is None:
             start, earlier = now, chosen
-        pupil = Pupil(self._views, start, earlier.joints, config)
+        pupil = PersonEstimates(self._views, start, earlier.joints, config)
         for sighting in seen:
             if sighting.t_s >= start:
                 pupil.follow(sighting.camera, sighting.t_s, (sighting,), config)

@@ -1,8 +1,8 @@
 """The Shelf's frames through the box's own fusion of several people, and what the edge would have done before it.
 
 OpenPose has neither tracks nor sigmas: a picture's persons are carried on from the last pictures' by their nearest keypoints, and a
-keypoint's sigma is a share of the person's size. From there on it is `services.fusion.persons`, `Pupil` and `triangulation`, at
-25 frames a second; a frame is read out five frames later, from nothing newer.
+keypoint's sigma is a share of the person's size. From there on it is `persons`, `person_estimates` and `triangulation` of
+`services.fusion`, at 25 frames a second; a frame is read out five frames later, from nothing newer.
 """
 
 import time
@@ -15,8 +15,8 @@ from scipy.optimize import linear_sum_assignment
 from models.arrays import Float
 from models.messages.motion import JointState
 from services.fusion.config import PRESETS
+from services.fusion.person_estimates import PersonEstimates
 from services.fusion.persons import Persons
-from services.fusion.pupil import Pupil
 from services.fusion.verdict import Pose
 from services.fusion.views import Sighting, Views
 from tests.bench.openpose import Grouped
@@ -102,7 +102,7 @@ def follow(views: Views, frames: list[list[list[Grouped]]]) -> Followed:
     return replace(followed, cpu_s=cpu_s)
 
 
-def _poses(estimates: Pupil, t_s: float) -> tuple[Pose, Pose]:
+def _poses(estimates: PersonEstimates, t_s: float) -> tuple[Pose, Pose]:
     """Now, without any delay, and `LAG_FRAMES` ago."""
     due = round(t_s * RATE_HZ) - LAG_FRAMES
     live, (smooth,) = estimates.poses(t_s, t_s, range(due, due + 1), CONFIG)

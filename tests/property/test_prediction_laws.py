@@ -9,8 +9,8 @@ from scipy.spatial.transform import Rotation
 
 from models.camera.pinhole import Camera
 from models.skeleton import coco
+from services.fusion.person_estimates import PersonEstimates
 from services.fusion.prediction import predict_crop
-from services.fusion.pupil import Pupil
 
 metres = st.floats(-1.5, 1.5)
 turns = st.floats(-3.2, 3.2)
@@ -38,6 +38,6 @@ def test_a_pupil_who_stands_in_the_camera_s_plane_stops_nothing(
     rotation = Rotation.from_euler("xyz", angles).as_matrix()
     matrix = np.array(((900.0, 0.0, 640.0), (0.0, 900.0, 360.0), (0.0, 0.0, 1.0)))
     camera = Camera("near", (1280, 720), matrix, np.zeros(5), rotation, -rotation @ np.array(place), np.zeros(2))
-    prediction = predict_crop(cast(Pupil, Standing(seed)), camera, 0)
+    prediction = predict_crop(cast(PersonEstimates, Standing(seed)), camera, 0)
     if prediction is not None:
         assert 32.0 <= prediction.at(100_000_000).side_px < 20 * 1280

@@ -1,4 +1,4 @@
-"""The chosen person: every picture of him or her is fused here, and asked for here at any instant."""
+"""One person who is followed: every picture of him or her is fused here, and asked for here at any instant."""
 
 import numpy as np
 
@@ -28,12 +28,12 @@ _SEED_SIGMA_M = 0.02
 _STALE_S = 0.2
 
 
-class Pupil:
+class PersonEstimates:
     """Estimates of one person within one epoch.
 
     Attributes:
         since_s: the instant from which on there are estimates.
-        misses: (C,) consecutive observations in which the pupil was not found.
+        misses: (C,) consecutive observations in which the person was not found.
         body: the filter of the body's centre.
     """
 
@@ -59,7 +59,7 @@ class Pupil:
 
     @property
     def familiar(self) -> Familiar:
-        """(camera, track) pairs by which the pupil was last known."""
+        """(camera, track) pairs by which the person was last known."""
         return frozenset(self._identities.items())
 
     @property
@@ -68,7 +68,7 @@ class Pupil:
         return not self._filters.newest.alive.any()
 
     def cameras_since(self, t_s: float) -> int:
-        """How many cameras have seen the pupil since then."""
+        """How many cameras have seen the person since then."""
         return sum(self._tracks.newest_s(camera) >= t_s for camera in range(len(self._views)))
 
     def expect(self, camera: int, t_s: float) -> Expectation:
@@ -76,7 +76,7 @@ class Pupil:
         return self._filters.at(t_s).expect(self._views.projections[camera])
 
     def follow(self, camera: int, t_s: float, persons: tuple[Sighting, ...], config: FusionConfig) -> None:
-        """Find the pupil in one picture and fuse it at the picture's own time."""
+        """Find the person in one picture and fuse it at the picture's own time."""
         projection = self._views.projections[camera]
         predicted = self._filters.at(t_s)
         expected = predicted.expect(projection)
@@ -86,7 +86,7 @@ class Pupil:
             return
         sighting, swapped = repair(found, expected)
         if self._outvoted(camera, sighting, expected, config):
-            return  # no miss: the camera looks at the right place, where somebody else stands before the pupil
+            return  # no miss: the camera looks at the right place, where somebody else stands before the person
         self.misses[camera] = 0
         self._identities[camera] = found.track
         repaired = sighting is not found
@@ -102,7 +102,7 @@ class Pupil:
         self._see_body(t_s, projection, sighting, expected)
 
     def _outvoted(self, camera: int, sighting: Sighting, expected: Expectation, config: FusionConfig) -> bool:
-        """Whether two other cameras see the pupil where this one sees, for the most part, somebody else."""
+        """Whether two other cameras see the person where this one sees, for the most part, somebody else."""
         seen = sighting.points_px, sighting.sigma_px, sighting.usable
         gate = config.filter.hard_gate
         if agreement(*seen, expected.points_px, expected.variance_px2, expected.known, gate) >= config.association.min_agreement:
@@ -120,7 +120,7 @@ class Pupil:
     def check(self, now_s: float, config: FusionConfig) -> None:
         """Hold the filters against triangulation at the newest instant that all cameras reach, and give up what nobody sees.
 
-        `now_s` is when the newest picture was taken, whether the pupil is in it or not.
+        `now_s` is when the newest picture was taken, whether the person is in it or not.
         """
         newest = np.array([self._tracks.newest_s(camera) for camera in range(len(self._views))])
         fresh = newest[newest >= newest.max() - _STALE_S]
