@@ -1,6 +1,7 @@
 """Laws of damaged lessons: whatever is cut off or changed, what was safe before comes back, and nothing false is ever read."""
 
 import copy
+import errno
 from collections.abc import Iterator
 from functools import cache
 from io import BytesIO
@@ -174,6 +175,25 @@ def require_kept(folder: Path, data: bytes, stages: list[Contents], at: int, saf
     assert kept.read_bytes() == changed
     with open_lesson(folder / f"changed{SUFFIX}") as lesson:
         assert as_logged(list(lesson.parts())) == list(PARTS[:safe])
+
+
+def test_a_damaged_file_of_which_no_copy_can_be_made_is_left_as_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    data, stages = written()
+    changed = bytearray(data[: stages[-1].end])
+    changed[stages[2].end + 100] ^= 1
+    left = tmp_path / f"changed{PART_SUFFIX}"
+    left.write_bytes(changed)
+
+    def half(source: Path, target: Path) -> None:
+        target.write_bytes(source.read_bytes()[:100])
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as full:
+        full.setattr("services.lesson.recovery.shutil.copyfile", half)
+        assert recover(tmp_path, run_ns=0) is None
+    assert [path.read_bytes() for path in tmp_path.iterdir()] == [changed]
+    recover(tmp_path, run_ns=0)
+    assert (tmp_path / f"changed{DAMAGED_SUFFIX}").read_bytes() == changed
 
 
 def test_of_a_lesson_that_was_only_cut_off_no_copy_is_made(tmp_path: Path) -> None:
