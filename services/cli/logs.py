@@ -34,7 +34,7 @@ def show(data: Path, query: Query, most: int, *, json: bool, follow: bool, repla
     folder = log_folder(data, replay=replay)
     if not follow:
         _require_log(folder)
-    with suppress(KeyboardInterrupt), _readable_log():
+    with suppress(KeyboardInterrupt), _readable_log(folder):
         lines, reader = last_lines(folder, query, most, torn=not follow)
         _print(lines, json=json)
         while follow:
@@ -56,7 +56,7 @@ def pack(file: Path, data: Path, query: Query, site: Path | None, *, replay: boo
     _require_log(folder)
     site = site or _site_of_last_start(folder)
     toml = None if site is None else _site_without_secrets(site)
-    with _readable_log():
+    with _readable_log(folder):
         lines = wanted_lines(folder, query)
         manifest = export(file, lines, toml, _told(query), dt.datetime.now(dt.UTC))
     included = f"the site file {site}" if site is not None else "no site file (name it with --site)"
@@ -92,13 +92,16 @@ def parse_since(text: str, now: dt.datetime) -> dt.datetime:
 
 
 @contextmanager
-def _readable_log() -> Iterator[None]:
+def _readable_log(folder: Path) -> Iterator[None]:
     try:
         yield
     except BrokenPipeError:
         raise  # Of the one who reads what we print.
     except OSError as error:
-        raise UserError(f"the log cannot be read: {error.strerror} ({error.filename})") from error
+        where = error.filename or folder
+        raise UserError(
+            f"the log cannot be read: {error.strerror} ({where}); correct its owner and rights, or mend its disk"
+        ) from error
 
 
 def _require_log(folder: Path) -> None:

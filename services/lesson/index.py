@@ -214,6 +214,9 @@ def _read(path: Path, lesson: str, size: int, changed_ns: int) -> LessonRow:
                 title, started_s = opened.header.title, opened.header.started_s
                 summary = opened.summary()
             seconds, gaps, segments = summary.seconds, summary.gaps, summary.segments
-    except (UserError, OSError) as error:
+    except UserError as error:
         state, problem = "damaged", str(error)
+    except OSError as error:
+        state = "damaged"
+        problem = f"lesson {path} cannot be read: {error.strerror}; correct its owner and rights, or mend its disk"
     return LessonRow(lesson, title, started_s, seconds, size, gaps, segments, state, problem, changed_ns)

@@ -77,7 +77,8 @@ def migrate_file(path: Path, now: dt.datetime) -> tuple[MigratedText, Path | Non
         now: the time, for the name of the backup.
 
     Raises:
-        UserError: as `migrated_text`, or the backup or the file cannot be written; then the file is as it was.
+        UserError: as `migrated_text`, or the backup or the file cannot be written, and then the file is as it was; or the file is
+            migrated, but not safe against a power cut.
     """
     file = path.resolve()
     data = read_file(file, "site file")
@@ -90,7 +91,15 @@ def migrate_file(path: Path, now: dt.datetime) -> tuple[MigratedText, Path | Non
         _replace(file, texts.new.encode())
     except OSError as error:
         raise UserError(
-            f"site file {path} cannot be migrated: {error.strerror} ({error.filename or file}); it was left as it is"
+            f"site file {path} cannot be migrated: {error.strerror} ({error.filename or file}) and was left as it is; "
+            "make room on its disk or correct its folder's owner and rights, then do it again"
+        ) from error
+    try:
+        sync_folder(file.parent)
+    except OSError as error:
+        raise UserError(
+            f"site file {path} was migrated, but a power cut may still undo it: {error.strerror}; mend its disk, "
+            f"and see that the file says 'version = {site_version(texts.new.encode(), path)}' (the old one is {backup})"
         ) from error
     return texts, backup
 
@@ -141,7 +150,6 @@ def _replace(file: Path, data: bytes) -> None:
         temporary.replace(file)
     finally:
         temporary.unlink(missing_ok=True)
-    sync_folder(file.parent)
 
 
 def _write_new(path: Path, data: bytes, mode: int) -> None:

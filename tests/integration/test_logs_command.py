@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from models.config.site import SITE_VERSION
-from services.logs.files import STARTED, log_folder, log_path
+from services.logs.files import STARTED, log_folder, log_numbers, log_path
 from services.logs.record import LogRecord
 from services.logs.writer import LogWriter
 from tests.integration.box import ROOT, Box
@@ -116,6 +116,16 @@ def test_the_log_of_replays_is_shown_and_packed_if_asked_for(data: Path) -> None
     assert "the lesson is over" not in kinebox_logs(data).stdout
     packed = kinebox_logs(data, "export", str(data / "replay.zip"), "--replay")
     assert packed.stdout.startswith(f"{data / 'replay.zip'} holds 1 lines and no site file")
+
+
+def test_a_log_that_cannot_be_read_is_one_line_with_what_to_do(data: Path) -> None:
+    file = log_path(data / "logs", log_numbers(data / "logs")[-1])
+    file.unlink()
+    file.mkdir()
+    shown = kinebox_logs(data)
+    assert shown.returncode == 2
+    assert f"cannot be read: Is a directory ({data}/logs); correct its owner and rights, or mend its disk" in shown.stderr
+    assert "Traceback" not in shown.stderr
 
 
 def test_damaged_lines_are_shown_as_such(data: Path) -> None:

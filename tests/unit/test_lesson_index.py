@@ -1,5 +1,6 @@
 """The list of lessons: what is in the folder, however the index was lost, broken or out of date."""
 
+import errno
 import os
 import sqlite3
 from dataclasses import replace
@@ -101,6 +102,18 @@ def test_a_file_that_cannot_be_read_is_listed_with_its_problem(tmp_path: Path) -
     assert {row.state for row in damaged.values()} == {"damaged"}
     assert "is damaged" in damaged["a"].problem
     assert "is no lesson" in damaged["b"].problem
+
+
+def test_a_lesson_on_a_disk_that_fails_is_listed_with_what_to_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = record(tmp_path, "a")
+
+    def fail(_: Path) -> None:
+        raise OSError(errno.EIO, "Input/output error")
+
+    monkeypatch.setattr(index, "open_lesson", fail)
+    (row,) = LessonIndex(tmp_path).lessons()
+    assert row.state == "damaged"
+    assert row.problem == f"lesson {file} cannot be read: Input/output error; correct its owner and rights, or mend its disk"
 
 
 @pytest.mark.parametrize("trouble", ["malformed", "locked", "folder gone"])

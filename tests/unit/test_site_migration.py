@@ -1,6 +1,8 @@
 """A site file of an older version: refused by name, migrated with a backup, never half written."""
 
 import datetime as dt
+import errno
+import re
 import subprocess
 import sys
 import tomllib
@@ -9,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from models.config.migrations import FIRST_VERSION, MIGRATIONS
-from models.config.site import SITE_VERSION, decode_site
+from models.config.site import SITE_VERSION, decode_site, site_version
 from models.errors import UserError
+from services.support import site_migration
 from services.support.site_migration import migrate_file, migrated_text, rewritten
 from tests.installed import ROOT
 
@@ -128,6 +131,29 @@ def test_a_disc_without_room_leaves_the_file_and_nothing_else(old: Path) -> None
     assert "cannot be migrated: File too large" in result.stdout
     assert old.read_bytes() == before
     assert list(old.parent.iterdir()) == [old]
+
+
+@pytest.mark.parametrize("safe_names", [0, 1, 2])
+def test_what_a_failing_disk_left_is_told_as_it_is(old: Path, monkeypatch: pytest.MonkeyPatch, safe_names: int) -> None:
+    """The names of the backup, of the new file and of the migrated one are made safe, in this order."""
+    before, synced = old.read_bytes(), list[Path]()
+
+    def sync_folder(folder: Path) -> None:
+        if len(synced) == safe_names:
+            raise OSError(errno.EIO, "Input/output error")
+        synced.append(folder)
+
+    monkeypatch.setattr(site_migration, "sync_folder", sync_folder)
+    with pytest.raises(UserError) as refused:
+        migrate_file(old, NOW)
+    told = str(refused.value)
+    assert "Input/output error" in told
+    if safe_names < 2:
+        assert "was left as it is; make room on its disk" in told
+        assert old.read_bytes() == before
+    else:
+        assert re.search(rf"was migrated, .*; mend its disk, .*'version = {SITE_VERSION}' \(the old one is .*{BACKUP}\)", told)
+        assert (site_version(old.read_bytes(), old), (old.parent / BACKUP).read_bytes()) == (SITE_VERSION, before)
 
 
 def test_an_end_before_the_new_file_takes_its_place_leaves_the_old_one(old: Path, monkeypatch: pytest.MonkeyPatch) -> None:
