@@ -25,6 +25,8 @@ REPLAY = "replay"
 """The process that plays a lesson, in fusion's place."""
 ROUTERS = (ROUTER, REPLAY)
 """One of them runs in every box, and has the bus."""
+SPARE_READY = "kinebox spare: ready"
+"""The line with which a spare says that it has imported and warmed up everything and waits for its post."""
 
 Check = Callable[[Site, Rig, Path], None]
 """What a part wants checked before anything is started, with the data folder; it raises `UserError` if the part could not work."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from models.errors import UserError
-from models.process import EDGE, ROUTERS, Bus, Playback, ProcessContext, process_name
+from models.process import EDGE, ROUTERS, SPARE_READY, Bus, Playback, ProcessContext, process_name
 from services.cli.parts import find_process, load_process
 from services.support.getting_ready import getting_ready
 from services.support.health import ResourceMeter
@@ -19,8 +19,8 @@ from services.support.site_files import read_site
 class ProcessOrder:
     """What to run: the process's entry point, and for an edge process its camera.
 
-    `start_ns` is shared by all processes of one run; None is now. A `spare` gets everything ready, then waits for a line on its
-    standard input, and ends without having joined the bus if that is closed. `playback` is what a replay plays.
+    `start_ns` is shared by all processes of one run; None is now. A `spare` gets everything ready, says so, then waits for a line
+    on its standard input, and ends without having joined the bus if that is closed. `playback` is what a replay plays.
     """
 
     entry: str
@@ -58,7 +58,7 @@ def run_process(order: ProcessOrder) -> None:
             main = load_process(entry)
     else:
         main = load_process(entry)
-        if order.spare and not sys.stdin.buffer.readline():
+        if order.spare and not _is_called():
             return
         bus = open_router(site.bus.endpoint) if routes else open_client(site.bus.endpoint, stop)
     if bus is None:
@@ -84,6 +84,13 @@ def run_process(order: ProcessOrder) -> None:
 
 def _require_camera(order: ProcessOrder, names: tuple[str, ...]) -> None:
     """Raise UserError unless an edge process has a camera of the site, and any other has none."""
+def _is_called() -> bool:
+    """Say that everything is ready, and wait for the post; False if it will never fall vacant."""
+    sys.stdout.write(f"{SPARE_READY}\n")
+    sys.stdout.flush()
+    return bool(sys.stdin.buffer.readline())
+
+
     if order.entry != EDGE:
         if order.camera is not None:
             raise UserError(f"process '{order.entry}' serves no camera of its own; leave out --camera")

@@ -13,7 +13,7 @@ from pathlib import Path
 import msgspec
 
 from models.errors import USER_ERROR_PREFIX
-from models.process import EDGE, Playback, process_name
+from models.process import EDGE, SPARE_READY, Playback, process_name
 
 _NICENESS = {EDGE: 5, "recorder": 10}
 """Inference takes all the CPU that it is given; fusion and the page, which need little, shall not wait for it. At the start nobody
@@ -97,6 +97,8 @@ class Child:
         self._partial = b""
         self.user_error = ""
         """What the process told a person last, without its prefix."""
+        self.ready = False
+        """It is a spare that said it has everything that it needs."""
 
     @property
     def pid(self) -> int:
@@ -106,6 +108,12 @@ class Child:
     def fileno(self) -> int:
         """A descriptor that becomes readable when the process ends."""
         return self._exit_fd
+
+    @property
+    def stopped(self) -> bool:
+        """Whether a signal stopped it (SIGSTOP, a terminal's): it does nothing, nor does it end, until somebody lets it go on."""
+        # The kernel tells a parent, and tells it again (WNOWAIT) for as long as it is so.
+        return self.poll() is None and os.waitid(os.P_PID, self.pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT) is not None
 
     def poll(self) -> int | None:
         """The exit code, negative if a signal ended it; None while it runs."""
@@ -127,6 +135,9 @@ class Child:
         for line in lines:
             if line.startswith(USER_ERROR_PREFIX):
                 self.user_error = line.removeprefix(USER_ERROR_PREFIX)
+        if SPARE_READY in lines:
+            self.ready = True
+            lines.remove(SPARE_READY)  # It is meant for us.
         return lines
 
     def begin(self) -> None:

@@ -12,7 +12,8 @@ LIMIT_S = 3.0
 BEAT_LIMIT_S = 1.0
 """Beats come five times a second from those who beat at all; five missed in a row are no delay of a busy CPU."""
 START_LIMIT_S = 120.0
-"""Who was never heard has hung after this long; a box without compiled kernels takes a minute to start."""
+"""Who was never heard has hung after this long; a box without compiled kernels takes a minute to start. A spare that was
+ready has done all that before, and has no longer than who was heard."""
 ROUTER_GAP_SHARE = 0.5
 """A router that is silent for longer than this share of its limit may be what keeps the others silent."""
 
@@ -25,22 +26,27 @@ class Silence:
     _started_s: dict[str, float] = field(default_factory=dict)
     _heard_s: dict[str, float] = field(default_factory=dict)
     _beating: set[str] = field(default_factory=set)
+    _ready: set[str] = field(default_factory=set)
     _router_back_s: float = float("-inf")
 
-    def start(self, name: str, now_s: float) -> None:
-        """A process was started."""
+    def start(self, name: str, now_s: float, *, ready: bool = False) -> None:
+        """A process was started, or a spare that was `ready` took over."""
         self.forget(name)
         self._started_s[name] = now_s
+        if ready:
+            self._ready.add(name)
 
     def get_ready(self, name: str, now_s: float) -> None:
         """A process said that it is still getting ready: it has as much time again as at its start."""
         self._started_s[name] = now_s
+        self._ready.discard(name)
 
     def forget(self, name: str) -> None:
         """A process ended, or it was decided that it shall."""
         self._started_s.pop(name, None)
         self._heard_s.pop(name, None)
         self._beating.discard(name)
+        self._ready.discard(name)
 
     def hear(self, name: str, now_s: float) -> None:
         """A health message of a process arrived."""
@@ -78,10 +84,10 @@ class Silence:
 
     def _silent(self, name: str, now_s: float) -> bool:
         heard_s = self._heard_s.get(name)
-        if heard_s is None:
-            return self._never_came(name, now_s)
+        too_long = self._never_came(name, now_s) if heard_s is None else now_s - heard_s > self._limit_s(name)
         # After the router's return everybody has the time of a health message, since links are mended one after the other.
-        return now_s - heard_s > self._limit_s(name) and now_s - self._router_back_s > LIMIT_S
+        return too_long and now_s - self._router_back_s > LIMIT_S
 
     def _never_came(self, name: str, now_s: float) -> bool:
-        return name in self._started_s and now_s - self._started_s[name] > START_LIMIT_S
+        limit_s = LIMIT_S if name in self._ready else START_LIMIT_S
+        return name in self._started_s and now_s - self._started_s[name] > limit_s

@@ -33,10 +33,12 @@ class Spares:
         self._not_before_s: dict[str, float] = {}
 
     def take(self, name: str) -> Child | None:
-        """The spare of a post, told to begin; None if there is none. One that is not ready yet begins when it is."""
-        spare = self._waiting.pop(name, None)
+        """The spare of a post, told to begin; None if there is none that can. One that is not ready yet begins when it is."""
+        spare = self._waiting.get(name)
         if spare is None:
             return None
+        self._look_at(name, spare)
+        del self._waiting[name]
         if spare.poll() is not None:
             spare.close()
             return None
@@ -53,8 +55,7 @@ class Spares:
         """
         spare = self._waiting.get(spec.name)
         if spare is not None:
-            for line in spare.lines():
-                self._journal.child_said(spec.name, line)
+            self._look_at(spec.name, spare)
             if spare.poll() is not None:
                 spare.close()
                 del self._waiting[spec.name]
@@ -65,6 +66,18 @@ class Spares:
             except OSError as error:
                 self._not_before_s[spec.name] = now_s + AGAIN_AFTER_S
                 self._journal.say(f"a spare of {spec.name} could not be started ({error.strerror})", level="warning")
+
+    def _look_at(self, name: str, spare: Child) -> None:
+        """Hear what a spare says, and end one that is stopped: it would take the post and do nothing there."""
+        was_ready = spare.ready
+        for line in spare.lines():
+            self._journal.child_said(name, line)
+        if spare.ready and not was_ready:
+            self._journal.note(f"a spare of {name} is ready")
+        if spare.stopped:
+            self._journal.say(f"the spare of {name} was stopped by a signal and is ended", level="warning")
+            spare.kill()
+            spare.wait()
 
     def dismiss(self) -> None:
         """End all of them."""

@@ -154,7 +154,7 @@ class Supervisor:
             self._tell(post)
             return
         post.manned_by(child)
-        self._silence.start(post.name, now_s)
+        self._silence.start(post.name, now_s, ready=child.ready)
 
     def _start_others(self, link: BusLink, now_s: float) -> None:
         waiting = [post for post in self._posts if post.waits]

@@ -1,10 +1,12 @@
 """Parts of a box that cost nothing: they report their health and do as a file in the data folder tells them when they start.
 
 `data/orders/NAME` holds one word: "crash", "hang" (reports no more once there is a file `data/hang`), "deaf" (to SIGTERM), "noise"
-(prints what is no log line) or "refuse" (ends with a line for people). `data/starts/NAME` gets a line a start: process id, common
-beginning, folder of compiled kernels.
+(prints what is no log line), "refuse" (ends with a line for people), "stop the second" (the second of that name stops itself) or
+"linger" (beats, ends of itself, and takes three seconds for that).
+`data/starts/NAME` gets a line a start: process id, common beginning, folder of compiled kernels.
 """
 
+import atexit
 import os
 import signal
 import socket
@@ -50,6 +52,9 @@ def _report_until_stopped(context: ProcessContext, server: socket.socket | None 
         raise RuntimeError("crashed as ordered")
     if order == "refuse":
         raise UserError(f"camera '{context.camera}': film.avi is missing; run 'make footage'")
+    if order == "linger":
+        _beat_and_linger(context)
+        return
     if order == "noise":
         sys.stdout.write("what a library printed\n")
     context.bus.declare_alive(topics.alive(context.name))
@@ -58,6 +63,15 @@ def _report_until_stopped(context: ProcessContext, server: socket.socket | None 
         if reporter.due() and not (order == "hang" and (context.data / "hang").exists()):
             reporter.report()
         _answer_or_wait(server)
+
+
+def _beat_and_linger(context: ProcessContext) -> None:
+    context.bus.declare_alive(topics.alive(context.name))
+    # Until the supervisor has heard one, and expects them.
+    for _ in range(20):
+        context.beat()
+        time.sleep(0.1)
+    atexit.register(time.sleep, 3.0)
 
 
 def _answer_or_wait(server: socket.socket | None) -> None:
@@ -80,6 +94,8 @@ def _order(context: ProcessContext) -> str:
         file.write(f"{os.getpid()} {context.start_ns} {os.environ.get('NUMBA_CACHE_DIR')}\n")
     order = context.data / "orders" / context.name
     word = order.read_text() if order.is_file() else ""
+    if word == "stop the second" and len(starts.read_text().splitlines()) == 2:
+        os.kill(os.getpid(), signal.SIGSTOP)
     if word == "deaf":
         signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])
     return word

@@ -71,3 +71,28 @@ def test_spares_die_with_a_supervisor_that_was_killed(tmp_path: Path) -> None:
         box.process.kill()
         _, alive = psutil.wait_procs(left, timeout=30)
         assert not alive
+
+
+def test_a_spare_that_is_stopped_makes_no_outage(tmp_path: Path) -> None:
+    with Box(tmp_path) as box:
+        box.wait_started()
+        until(lambda: "fusion" in spares(box), "a spare")
+        stopped = spares(box)["fusion"]
+        os.kill(stopped, signal.SIGSTOP)
+        os.kill(box.pid("fusion"), signal.SIGKILL)
+        box.wait_restarted("fusion")
+        assert box.pid("fusion") != stopped
+        with HealthWatch(box) as watch:
+            watch.wait_for("fusion", "ok", box.pid("fusion"))
+        assert box.end() == 0
+
+
+def test_a_spare_that_is_stopped_as_it_takes_over_is_found_out_in_seconds(tmp_path: Path) -> None:
+    with Box(tmp_path, {"fusion": "stop the second"}) as box:
+        box.wait_started()
+        log = box.data / "logs" / "kinebox.log"
+        until(lambda: "a spare of fusion is ready" in log.read_text(), "a spare that is ready")
+        os.kill(box.pid("fusion"), signal.SIGKILL)
+        box.wait_restarted("fusion", starts=3)
+        assert box.end() == 0
+        assert "fusion hung and is started again" in box.errors.read_text()
