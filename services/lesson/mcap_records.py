@@ -106,7 +106,7 @@ def parse(kind: type[_Readable[RecordT_co]], place: Place) -> RecordT_co:
     """
     try:
         return kind.read(ReadDataStream(BytesIO(place.body)))
-    except (McapError, struct.error, ValueError) as error:
+    except (McapError, struct.error, ValueError, OverflowError) as error:  # the last of lengths that no file can have
         raise DamageError(f"the record at byte {place.start} cannot be read") from error
 
 

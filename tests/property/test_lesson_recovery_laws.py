@@ -148,10 +148,14 @@ def test_at_the_start_every_lesson_that_was_left_is_finished_but_the_one_of_this
 
 LENGTH_AT = 3
 """Changed there, a record's length says that it goes on beyond the end of the file."""
+DATA_LENGTH_AT = 52
+"""The highest byte of the length of a chunk's data."""
 
 
 @pytest.mark.parametrize(
-    ("safe", "offset"), [(2, 100), (0, 100), (0, LENGTH_AT), (5, LENGTH_AT)], ids=["middle", "first", "first length", "last length"]
+    ("safe", "offset"),
+    [(2, 100), (0, 100), (0, LENGTH_AT), (5, LENGTH_AT), (2, DATA_LENGTH_AT)],
+    ids=["middle", "first", "first length", "last length", "length of the data"],
 )
 def test_of_a_file_that_is_damaged_the_whole_is_kept(tmp_path: Path, safe: int, offset: int) -> None:
     data, stages = written()
@@ -168,7 +172,7 @@ def test_of_a_file_that_is_damaged_before_its_first_chunk_the_whole_is_kept(tmp_
 def require_kept(folder: Path, data: bytes, stages: list[Contents], at: int, safe: int) -> None:
     """Change a byte; the changed file must be kept, and so many parts come back."""
     changed = bytearray(data[: stages[-1].end])
-    changed[at] ^= 0x40
+    changed[at] ^= 0xC0
     (folder / f"changed{PART_SUFFIX}").write_bytes(changed)
     assert recover(folder, run_ns=0) is None
     (kept,) = folder.glob(f"*{DAMAGED_SUFFIX}")
