@@ -174,7 +174,7 @@ def for_peers(rig: Rig, keypoints: tuple[Float, Float], scale: float) -> Keypoin
 def pose2sim(rig: Rig, keypoints: tuple[Float, Float], scale: float) -> Answer:
     """The peer with its default filter on the pupil's keypoints."""
     with tempfile.TemporaryDirectory() as folder:
-        ((_, filtered),) = run_pose2sim(Path(folder), [for_peers(rig, keypoints, scale)], ["butterworth"])
+        ((_, filtered),) = run_pose2sim(Path(folder), [for_peers(rig, keypoints, scale)], ["butterworth"], [False])
     return filtered
 
 

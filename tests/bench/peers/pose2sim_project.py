@@ -2,12 +2,14 @@
 
 Settings are its demo's and documentation's for one person (thresholds 0.3 and 15 px at full resolution, at least two
 cameras, gaps below 20 frames interpolated, Hampel filter before the filter proper), but for displays, which are off. Each of its
-filters has its demo's parameters. It is given keypoints that are
+filters has its demo's parameters. Its handling of left-right swaps is documented as not implemented, and off in its demos; there is
+code for it, so everything is asked for once more with it. It is given keypoints that are
 already undistorted and shifted, with a calibration without distortion, so that it is not charged for what it does not do.
 """
 
 import json
 from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 
 import cv2
@@ -34,7 +36,9 @@ FILTERS = (
     "butterworth_on_speed",
     "acc_minimizing",
 )
-SETTINGS = {
+SWAPS = "_swaps"
+"""Ends the name of a setting with its handling of left-right swaps."""
+_SETTINGS = {
     "raw": "triangulation alone: cameras are left out until the mean reprojection error is below 15 px; no filter",
     "butterworth": "its demo: + Hampel, Butterworth 4th order 6 Hz",
     "kalman": "+ Hampel, Kalman smoother, trust ratio 500",
@@ -46,6 +50,7 @@ SETTINGS = {
     "butterworth_on_speed": "+ Hampel, Butterworth on speed, 4th order 10 Hz",
     "acc_minimizing": "+ Hampel, Whittaker-Henderson 6 Hz",
 }
+SETTINGS = _SETTINGS | {f"{name}{SWAPS}": f"{text}; swaps of left and right handled" for name, text in _SETTINGS.items()}
 _NAMES = {
     "Nose": "nose",
     **{side[0].upper() + part.capitalize(): f"{side}_{part}" for side in ("left", "right") for part in
@@ -55,32 +60,37 @@ JOINTS = tuple(sorted(coco.INDEX[name] for name in _NAMES.values()))
 """The joints that it has: all but eyes and ears."""
 
 
-def run_pose2sim(folder: Path, clips: Sequence[Keypoints], filters: Sequence[str] = FILTERS) -> list[list[Answer]]:
+def run_pose2sim(
+    folder: Path, clips: Sequence[Keypoints], filters: Sequence[str] = FILTERS, swaps: Sequence[bool] = (False, True)
+) -> list[list[Answer]]:
     """Reconstruct one person in clips: the answers of the triangulation alone and after each filter.
 
     Args:
         folder: an empty folder to work in.
         clips: keypoints, without distortion.
         filters: of `FILTERS`.
+        swaps: without and with its handling of left-right swaps, or one of both.
     """
-    projects = [folder / str(number) for number in range(len(clips))]
-    for project, clip in zip(projects, clips, strict=True):
+    order = [(clip, handled) for clip in clips for handled in swaps]
+    projects = [folder / str(number) for number in range(len(order))]
+    for project, (clip, handled) in zip(projects, order, strict=True):
         _write_calibration(project / "calibration", clip.rig, clip.scale)
         _write_keypoints(project / "pose", clip.rig, clip.points_px * clip.scale, clip.scores)
-        (project / "Config.toml").write_text(_config(len(clip), clip.rate_hz))
+        (project / "Config.toml").write_text(_config(len(clip), clip.rate_hz, swaps=handled))
     times = json.loads(run_in(NAME, [",".join(filters), *(str(project.absolute()) for project in projects)]))
-    return [
-        [_answer(project, setting, seconds, len(clip)) for setting in ("raw", *filters)]
-        for project, clip, seconds in zip(projects, clips, times, strict=True)
+    answers = [
+        [_answer(project, setting, seconds, len(clip), SWAPS if handled else "") for setting in ("raw", *filters)]
+        for project, (clip, handled), seconds in zip(projects, order, times, strict=True)
     ]
+    return [list(chain(*answers[first : first + len(swaps)])) for first in range(0, len(answers), len(swaps))]
 
 
-def _answer(project: Path, setting: str, seconds: dict[str, dict[str, float]], frames: int) -> Answer:
+def _answer(project: Path, setting: str, seconds: dict[str, dict[str, float]], frames: int, ending: str) -> Answer:
     stages = ["association", "triangulation", *([] if setting == "raw" else [setting])]
     cpu_ms, wall_ms = (1e3 * sum(seconds[stage][clock] for stage in stages) / frames for clock in ("cpu", "wall"))
     files = (project / "pose-3d").glob("*.trc")
     (file,) = [f for f in files if ("filt" not in f.name if setting == "raw" else f.stem.endswith(f"filt_{setting}"))]
-    return Answer(f"{NAME}.{setting}", _read_trc(file, frames), cpu_ms, wall_ms)
+    return Answer(f"{NAME}.{setting}{ending}", _read_trc(file, frames), cpu_ms, wall_ms)
 
 
 def _write_calibration(folder: Path, rig: Rig, scale: float) -> None:
@@ -115,7 +125,7 @@ def _write_keypoints(folder: Path, rig: Rig, points_px: Float, scores: Float) ->
             (target / f"{camera.name}_{frame:06d}.json").write_text(json.dumps({"version": 1.3, "people": people}))
 
 
-def _config(frames: int, rate_hz: float) -> str:
+def _config(frames: int, rate_hz: float, *, swaps: bool) -> str:
     return f"""
 [project]
 project_dir = "."
@@ -143,7 +153,7 @@ sections_to_keep = "all"
 min_chunk_size = 10
 fill_large_gaps_with = "last_value"
 show_interp_indices = false
-handle_LR_swap = false
+handle_LR_swap = {str(swaps).lower()}
 undistort_points = false
 make_c3d = false
 [filtering]
