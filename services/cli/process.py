@@ -1,5 +1,6 @@
 """Run one process of the box: read the site, join the bus, and hand over until told to stop."""
 
+import contextlib
 import sys
 import time
 from dataclasses import dataclass
@@ -47,7 +48,7 @@ def run_process(order: ProcessOrder) -> None:
     site, rig = read_site(order.site)
     _require_camera(order, rig.names)
     entry = find_process(order.entry)
-    from services.bus.zenoh_bus import open_client, open_router  # noqa: PLC0415 - a wrong site file shall not wait for it
+    from services.bus.zenoh_bus import BusError, open_client, open_router  # noqa: PLC0415 - a wrong site file shall not wait for it
 
     bus: Bus | None
     routes = order.entry in ROUTERS
@@ -63,6 +64,7 @@ def run_process(order: ProcessOrder) -> None:
         bus = open_router(site.bus.endpoint) if routes else open_client(site.bus.endpoint, stop)
     if bus is None:
         return
+    heartbeat = Heartbeat(order.name, bus)
     context = ProcessContext(
         name=order.name,
         camera=order.camera,
@@ -74,16 +76,16 @@ def run_process(order: ProcessOrder) -> None:
         stop=stop,
         resources=ResourceMeter(),
         playback=order.playback,
-        beat=Heartbeat(order.name, bus),
+        beat=heartbeat,
     )
     try:
         main(context)
     finally:
+        with contextlib.suppress(BusError):  # Who cannot say that it ends ends all the same.
+            heartbeat.last()
         bus.close()
 
 
-def _require_camera(order: ProcessOrder, names: tuple[str, ...]) -> None:
-    """Raise UserError unless an edge process has a camera of the site, and any other has none."""
 def _is_called() -> bool:
     """Say that everything is ready, and wait for the post; False if it will never fall vacant."""
     sys.stdout.write(f"{SPARE_READY}\n")
@@ -91,6 +93,8 @@ def _is_called() -> bool:
     return bool(sys.stdin.buffer.readline())
 
 
+def _require_camera(order: ProcessOrder, names: tuple[str, ...]) -> None:
+    """Raise UserError unless an edge process has a camera of the site, and any other has none."""
     if order.entry != EDGE:
         if order.camera is not None:
             raise UserError(f"process '{order.entry}' serves no camera of its own; leave out --camera")

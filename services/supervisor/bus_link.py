@@ -9,7 +9,7 @@ from models.messages.addressed import read_health
 from models.messages.health import Health, MachineHealth, SupervisorHealth
 from models.process import Bus, Subscription
 from services.support.health import HealthReporter, ResourceMeter
-from services.support.heartbeat import beating_pid
+from services.support.heartbeat import Beat, read_beat
 
 NAME = "supervisor"
 _KEEP = 4
@@ -25,12 +25,12 @@ def unread_healths(subscription: Subscription) -> list[Health]:
     return healths
 
 
-def unread_beats(subscription: Subscription) -> list[tuple[str, int]]:
-    """What a subscription to beats has for us now: processes with their ids. What is no beat is not counted as one."""
-    beats: list[tuple[str, int]] = []
+def unread_beats(subscription: Subscription) -> list[tuple[str, Beat]]:
+    """What a subscription to beats has for us now, by process. What is no beat is not counted as one."""
+    beats: list[tuple[str, Beat]] = []
     while (delivery := subscription.receive(0.0)) is not None:
-        if (pid := beating_pid(delivery.payload)) is not None:
-            beats.append((topics.process_of(delivery.topic), pid))
+        if (beat := read_beat(delivery.payload)) is not None:
+            beats.append((topics.process_of(delivery.topic), beat))
     return beats
 
 
@@ -57,8 +57,8 @@ class BusLink:
         """What has come in since the last call."""
         return [] if self._subscription is None else unread_healths(self._subscription)
 
-    def beats(self) -> list[tuple[str, int]]:
-        """The processes, with their ids, whose loops have said since the last call that they go round."""
+    def beats(self) -> list[tuple[str, Beat]]:
+        """The processes whose loops have said since the last call that they go round, or that they end."""
         return [] if self._beats is None else unread_beats(self._beats)
 
     def say(

@@ -14,6 +14,8 @@ BEAT_LIMIT_S = 1.0
 START_LIMIT_S = 120.0
 """Who was never heard has hung after this long; a box without compiled kernels takes a minute to start. A spare that was
 ready has done all that before, and has no longer than who was heard."""
+END_LIMIT_S = 10.0
+"""Who has said that it ends has hung if it still runs after this long; to tidy up takes seconds on a loaded CPU."""
 ROUTER_GAP_SHARE = 0.5
 """A router that is silent for longer than this share of its limit may be what keeps the others silent."""
 
@@ -26,6 +28,7 @@ class Silence:
     _started_s: dict[str, float] = field(default_factory=dict)
     _heard_s: dict[str, float] = field(default_factory=dict)
     _beating: set[str] = field(default_factory=set)
+    _ending: set[str] = field(default_factory=set)
     _ready: set[str] = field(default_factory=set)
     _router_back_s: float = float("-inf")
 
@@ -46,6 +49,7 @@ class Silence:
         self._started_s.pop(name, None)
         self._heard_s.pop(name, None)
         self._beating.discard(name)
+        self._ending.discard(name)
         self._ready.discard(name)
 
     def hear(self, name: str, now_s: float) -> None:
@@ -57,6 +61,11 @@ class Silence:
     def beat(self, name: str, now_s: float) -> None:
         """A heartbeat of a process arrived: from now on it is expected to beat."""
         self._beating.add(name)
+        self.hear(name, now_s)
+
+    def last_beat(self, name: str, now_s: float) -> None:
+        """A process said that it ends: nothing more will be heard of it."""
+        self._ending.add(name)
         self.hear(name, now_s)
 
     def restart_clocks(self, now_s: float) -> None:
@@ -72,11 +81,13 @@ class Silence:
             return [self.router] if self._never_came(self.router, now_s) else []
         if now_s - router_heard_s > self._limit_s(self.router):
             return [self.router]
-        if now_s - router_heard_s > self._router_gap_s():
+        if self.router in self._ending or now_s - router_heard_s > self._router_gap_s():
             return []
         return [name for name in self._started_s if name != self.router and self._silent(name, now_s)]
 
     def _limit_s(self, name: str) -> float:
+        if name in self._ending:
+            return END_LIMIT_S
         return BEAT_LIMIT_S if name in self._beating else LIMIT_S
 
     def _router_gap_s(self) -> float:

@@ -202,10 +202,10 @@ class Supervisor:
 
     def _hear(self, link: BusLink, now_s: float) -> None:
         posts = {post.name: post for post in self._posts}
-        for name, pid in link.beats():
+        for name, beat in link.beats():
             post = posts.get(name)
-            if post is not None and post.child is not None and post.child.pid == pid:
-                self._silence.beat(name, now_s)
+            if post is not None and post.child is not None and post.child.pid == beat.pid:
+                (self._silence.last_beat if beat.last else self._silence.beat)(name, now_s)
         for health in link.heard():
             post = posts.get(health.process)
             # What an earlier process of that name said, or we on its behalf, is no sign of life.

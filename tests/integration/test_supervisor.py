@@ -102,6 +102,16 @@ def test_a_loop_that_hangs_behind_a_living_network_is_found_too(tmp_path: Path) 
         assert box.end() == 0
 
 
+@pytest.mark.parametrize("name", ["fusion", "edge-a"])
+def test_a_process_that_ends_of_itself_slowly_is_not_taken_for_hung(tmp_path: Path, name: str) -> None:
+    with Box(tmp_path, {name: "linger"}, "[supervisor]\nspares = false\n") as box:
+        box.wait_started()
+        box.wait_restarted(name)
+        assert box.end() == 0
+        assert f"{name} ended with exit code 0 and is started again" in box.errors.read_text()
+        assert "hang" not in box.errors.read_text()
+
+
 def test_a_process_that_keeps_crashing_is_given_up_and_the_rest_goes_on(tmp_path: Path) -> None:
     with Box(tmp_path, {"edge-b": "crash"}, "[supervisor]\nmax_restarts = 2\n") as box:
         box.wait_started()

@@ -17,6 +17,7 @@ from services.doctor.agreement import judge_agreement
 from services.doctor.listen import Heard
 from services.lesson.remote import Remote
 from services.supervisor.bus_link import unread_beats, unread_healths
+from services.support.heartbeat import Beat
 from tests.mutations import test_mutations as test_mutations  # noqa: PLC0414 - what it asks for is counted, too
 from tests.mutations.consumers import ASKED, patterns, received, topics_of
 from tests.mutations.feed import COUNTS, GROWTH_MB, Growth, deliveries
@@ -38,7 +39,7 @@ def test_the_supervisor_survives_and_still_hears(topic: str, count: int) -> None
     name = topics.process_of(topic)
     if matches(topics.ALL_BEATS, topic):
         mailbox.put(topic, b"4711")
-        assert unread_beats(mailbox) == [(name, 4711)]
+        assert unread_beats(mailbox) == [(name, Beat(4711, last=False))]
     else:
         true = healths(time.monotonic_ns())[name]
         mailbox.put(topic, codec.encode(true))

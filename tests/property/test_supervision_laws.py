@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from models.config.site import SupervisorConfig
 from services.supervisor.policy import GiveUp, History, Restart, decide
-from services.supervisor.silence import BEAT_LIMIT_S, LIMIT_S, ROUTER_GAP_SHARE, START_LIMIT_S, Silence
+from services.supervisor.silence import BEAT_LIMIT_S, END_LIMIT_S, LIMIT_S, ROUTER_GAP_SHARE, START_LIMIT_S, Silence
 
 CONFIGS = st.builds(SupervisorConfig, max_restarts=st.integers(0, 8), window_s=st.floats(1, 120))
 UPTIMES_S = st.lists(st.floats(0, 100), min_size=1, max_size=40)
@@ -183,3 +183,18 @@ def test_who_beats_is_missed_within_little_more_than_a_second_and_nobody_is_blam
     found = beats_after(lateness_s, {name: at_s})
     assert set(found) == {name}
     assert BEAT_LIMIT_S - 0.5 <= found[name] - at_s <= BEAT_LIMIT_S + 0.2
+
+
+@given(st.sampled_from(NAMES))
+def test_who_said_that_it_ends_has_time_to_leave_and_nobody_is_blamed_for_it(name: str) -> None:
+    silence = all_started()
+    for each in NAMES:
+        silence.beat(each, 0.0)
+    silence.last_beat(name, 0.0)
+    for tenth in range(1, round(10 * END_LIMIT_S) + 1):
+        for each in NAMES:
+            # With the router gone from the bus, nobody is heard any more.
+            if name not in ("fusion", each):
+                silence.beat(each, tenth / 10)
+        assert silence.hung(tenth / 10) == []
+    assert silence.hung(END_LIMIT_S + 0.1) == [name]
