@@ -16,6 +16,7 @@ from services import tablet
 from services.doctor.finding import Examined, Fact, Finding
 from services.support.environment import process_environment
 from services.support.requirements import DISTRIBUTION, installed_version, required_packages
+from services.support.signals import signal_name
 from services.support.version import kinebox_version
 
 PAGE = Path(tablet.__file__).parent / "web" / "dist"
@@ -203,7 +204,7 @@ def _run(module: str, *arguments: str, environment: dict[str, str]) -> tuple[int
 
 
 def _end(code: int) -> str:
-    return signal.Signals(-code).name if code < 0 else f"exit code {code}"
+    return signal_name(-code) if code < 0 else f"exit code {code}"
 
 
 def _page_lacks(page: Path) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ import sys
 import time
 from collections import defaultdict
 from pathlib import Path
+from traceback import format_exception
 from typing import Any, TextIO
 
 import msgspec
@@ -85,6 +86,11 @@ class Journal:
     def note(self, event: str, **fields: Any) -> None:
         """A line of the supervisor's own for those who read the log afterwards."""
         self._keep(record_of(fields | {"event": event}, _SUPERVISOR, _now()))
+
+    def broke(self, error: Exception) -> None:
+        """What ends the supervisor itself, with its traceback."""
+        event = f"the supervisor ended by a defect: {type(error).__name__}: {error}"
+        self.note(event, level="critical", exception="".join(format_exception(error)))
 
     def welcome(self, block: str) -> None:
         """Lines meant for a person only, on stdout."""

@@ -1,6 +1,5 @@
 """A post that has to be manned: one process of the box, whether it runs, waits for its restart or was given up."""
 
-import signal
 from dataclasses import dataclass, field
 
 from models.config.site import SupervisorConfig
@@ -8,6 +7,7 @@ from models.errors import USER_ERROR_CODE
 from models.messages.health import Restarts
 from services.supervisor.child import Child, ChildSpec
 from services.supervisor.policy import GiveUp, History, Restart, decide
+from services.support.signals import signal_name
 
 SETTLES_WITHIN_S = 10.0
 """While a box starts, its parts wait for one another and rightly call themselves degraded; to a person that is no news yet."""
@@ -99,4 +99,4 @@ def describe_exit(code: int) -> str:
     """What became of a process, as a verb."""
     if code >= 0:
         return f"ended with exit code {code}"
-    return f"was ended by {signal.Signals(-code).name}"
+    return f"was ended by {signal_name(-code)}"

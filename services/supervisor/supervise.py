@@ -58,6 +58,11 @@ def supervise(site_file: Path, data: Path, checks: Iterable[Check], playback: Pl
     journal.note(STARTED, site=str(site_file.resolve()), version=kinebox_version())
     try:
         Supervisor(site_file, data, site, rig, journal, playback).run(stop)
+    except UserError:
+        raise
+    except Exception as error:
+        journal.broke(error)
+        raise
     finally:
         journal.close()
 

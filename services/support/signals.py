@@ -1,4 +1,4 @@
-"""Being told to stop."""
+"""Being told to stop, and the names of signals."""
 
 import os
 import signal
@@ -32,6 +32,14 @@ def stop_on_signals() -> threading.Event:
 
     threading.Thread(target=wait, name="signals", daemon=True).start()
     return stop
+
+
+def signal_name(number: int) -> str:
+    """What a signal is called: SIGKILL; "signal 40" if it has no name, as those for real time."""
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"
 
 
 def _leave_to_thread(_number: int, _frame: object) -> None:

@@ -1,5 +1,9 @@
+import signal
+
+import pytest
+
 from services.supervisor.child import ChildSpec
-from services.supervisor.post import SETTLES_WITHIN_S, Post
+from services.supervisor.post import SETTLES_WITHIN_S, Post, describe_exit
 
 
 def test_what_settles_by_itself_after_a_start_is_no_news() -> None:
@@ -18,3 +22,17 @@ def test_what_does_not_settle_is_told_once_and_so_is_its_end() -> None:
 
 def test_a_failure_is_told_at_once() -> None:
     assert Post(ChildSpec("fusion")).reports("failed", 100.0)
+
+
+@pytest.mark.parametrize(
+    ("code", "words"),
+    [
+        (0, "ended with exit code 0"),
+        (3, "ended with exit code 3"),
+        (-signal.SIGKILL, "was ended by SIGKILL"),
+        # A real-time signal, which has no name.
+        (-40, "was ended by signal 40"),
+    ],
+)
+def test_every_end_of_a_process_can_be_told(code: int, words: str) -> None:
+    assert describe_exit(code) == words
