@@ -1,8 +1,8 @@
 """A process that takes long to get ready says so, instead of being taken for hung.
 
 The kernels of fusion are compiled at the first start after an update, which takes a minute on two idle cores and several on a busy
-box. Nothing of the process's loop runs meanwhile, so a thread says it once a second; not for ever, since a process that really
-hangs must be found out.
+box; a recorder reads through the lessons that a crash left. Nothing of the process's loop runs meanwhile, so a thread says it once
+a second; not for ever, since a process that really hangs must be found out.
 """
 
 import threading
