@@ -4,12 +4,16 @@ import os
 import signal
 import socket
 import threading
+import time
 
+SAME_WISH_S = 0.5
+"""Signals that come so soon after the first are no second wish: `timeout` and a closed terminal send one to the process and one to
+its group."""
 _STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def stop_on_signals() -> threading.Event:
-    """An event that the first SIGINT, SIGTERM or SIGHUP sets; the second one ends the process at once.
+    """An event that the first SIGINT, SIGTERM or SIGHUP sets; one that comes `SAME_WISH_S` later ends the process at once.
 
     Call it on the main thread. Python's own handlers run there between two instructions: they wait for long calls into
     compiled code, and setting an event in one can wait for ever for a lock that the interrupted instruction holds. So the
@@ -28,7 +32,11 @@ def stop_on_signals() -> threading.Event:
         with sender:  # Kept open for as long as the process lives.
             receiver.recv(1)
             stop.set()
-            os._exit(128 + receiver.recv(1)[0])
+            first_s = time.monotonic()
+            number = receiver.recv(1)[0]
+            while time.monotonic() - first_s < SAME_WISH_S:
+                number = receiver.recv(1)[0]
+            os._exit(128 + number)
 
     threading.Thread(target=wait, name="signals", daemon=True).start()
     return stop
