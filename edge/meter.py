@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from models.messages.health import CameraHealth, Health
+from models.messages.trouble import Trouble
 from models.process import Resources
 
 PERIOD_NS = 1_000_000_000
@@ -28,6 +29,8 @@ class Meter:
     pictures: int = 0
     inferred: int = 0
     damaged: int = 0
+    refused: int = 0
+    refusal: str = ""
     backlog_ns: int = 0
     bright: float | None = None
     spacing_ns: int = 0
@@ -55,14 +58,19 @@ class Meter:
         if bright is not None:
             self.bright = bright if self.bright is None else max(self.bright, bright)
 
+    def refused_plan(self, why: str) -> None:
+        """A plan of fusion's cannot be obeyed."""
+        self.refused += 1
+        self.refusal = why
+
     def is_due(self, t_now_ns: int) -> bool:
         """Whether a second has passed since the last report, or the camera has just fallen silent."""
         return t_now_ns - self.t_report_ns >= PERIOD_NS or (self._silent() and not self.silence_told)
 
-    def report(self, t_now_ns: int, target_hz: float, network: str, problem: str, used: Resources) -> Health:
-        """The health message of the time since the last report; counting begins anew."""
+    def report(self, t_now_ns: int, target_hz: float, network: str, troubles: tuple[Trouble, ...], used: Resources) -> Health:
+        """The health message of the time since the last report; counting begins anew. `troubles` are those of other parts."""
         seconds = max(1e-9, (t_now_ns - self.t_report_ns) * 1e-9)
-        reason = self._reason(problem)
+        everything = (*self._troubles(), *troubles)
         self.silence_told = self._silent()
         camera = CameraHealth(
             camera=self.camera,
@@ -74,7 +82,7 @@ class Meter:
             network=network,
             stage_ms={stage: spent * 1e-6 / max(1, self.inferred) for stage, spent in self.spent_ns.items()},
         )
-        self.pictures = self.inferred = self.damaged = self.backlog_ns = 0
+        self.pictures = self.inferred = self.damaged = self.refused = self.backlog_ns = 0
         self.bright = None
         self.spent_ns = dict.fromkeys(self.spent_ns, 0)
         self.t_report_ns = t_now_ns
@@ -83,10 +91,10 @@ class Meter:
             process=self.process,
             pid=self.pid,
             t_ns=t_now_ns,
-            state="degraded" if reason else "ok",
-            reason=reason,
+            state="degraded" if everything else "ok",
+            troubles=everything,
             cpu_cores=used.cpu_cores,
-            rss_mb=used.rss_mb,
+            rss_mib=used.rss_mib,
             camera=camera,
         )
 
@@ -104,14 +112,20 @@ class Meter:
     def _silent(self) -> bool:
         return self._silence_ns() >= max(SILENT_NS, 2 * self.spacing_ns)
 
-    def _reason(self, problem: str) -> str:
-        reasons = []
+    def _troubles(self) -> tuple[Trouble, ...]:
+        camera = f"camera '{self.camera}'"
+        found = []
         if self._silent():
-            reasons.append(f"camera '{self.camera}' has shown nothing for {self._silence_ns() * 1e-9:.0f} s")
+            words = f"{camera} has shown nothing for {self._silence_ns() * 1e-9:.0f} s"
+            found.append(Trouble("camera_silent", words, "check its cable, its power and its file; unplug it and plug it in again"))
         if self.bright is not None and self.bright < BLACK_LEVEL:
-            reasons.append(f"camera '{self.camera}' shows black pictures; is its lens covered, or the light off?")
+            found.append(
+                Trouble("camera_dark", f"{camera} shows black pictures", "take the cap off its lens, or turn on the light")
+            )
         if self.damaged:
-            reasons.append(f"camera '{self.camera}': {self.damaged} damaged pictures in the last second")
-        if problem:
-            reasons.append(problem)
-        return "; ".join(reasons)
+            words = f"{camera}: {self.damaged} damaged pictures in the last second"
+            found.append(Trouble("pictures_damaged", words, "check its cable and its file"))
+        if self.refused:
+            words = f"{camera}: {self.refused} plans of fusion's could not be read in the last second ({self.refusal})"
+            found.append(Trouble("plans_refused", words, "look for a process of another version; end the box and start it anew"))
+        return tuple(found)

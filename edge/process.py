@@ -24,6 +24,7 @@ from models.config.site import CameraConfig
 from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.control import ViewControl
+from models.messages.trouble import CameraCode, Trouble
 from models.process import ProcessContext, Subscription
 
 GRAB_TIMEOUT_S = 0.2
@@ -97,26 +98,35 @@ def _camera_config(context: ProcessContext) -> CameraConfig:
 
 @dataclass
 class Plan:
-    """Fusion's newest wish, or the default while there is none or it is too old. `problem` says what could not be read."""
+    """Fusion's newest wish, or the default while there is none or it is too old. `refuse` is told why one cannot be read."""
 
     subscription: Subscription
     fallback: ViewControl
+    refuse: Callable[[str], None]
     newest: ViewControl | None = None
-    problem: str = ""
 
     def at(self, now_ns: int) -> ViewControl:
         """The plan to obey now."""
         while (delivery := self.subscription.receive(0.0)) is not None:
             try:
-                control = codec.decode(delivery.payload, ViewControl)
-                if control.camera != self.fallback.camera or abs(now_ns - control.t_ns) > CONTROL_LIFETIME_NS:
-                    raise codec.CodecError(f"it is for camera '{control.camera}' and {(now_ns - control.t_ns) * 1e-9:.1f} s old")
-                self.newest, self.problem = control, ""
+                control = self._read(delivery.payload, now_ns)
             except codec.CodecError as error:
-                self.problem = f"a plan of fusion's cannot be read: {error}"
+                self.refuse(str(error))
+                continue
+            # One that is too old waited while this process was held up: it is void, but nothing is wrong with it.
+            if now_ns - control.t_ns <= CONTROL_LIFETIME_NS:
+                self.newest = control
         if self.newest is not None and now_ns - self.newest.t_ns > CONTROL_LIFETIME_NS:
             self.newest = None
         return self.newest or self.fallback
+
+    def _read(self, payload: bytes, now_ns: int) -> ViewControl:
+        control = codec.decode(payload, ViewControl)
+        if control.camera != self.fallback.camera:
+            raise codec.CodecError(f"it is for camera '{control.camera[:60]}'")
+        if control.t_ns - now_ns > CONTROL_LIFETIME_NS:
+            raise codec.CodecError(f"it is of {(control.t_ns - now_ns) * 1e-9:.1f} s from now")
+        return control
 
 
 @dataclass
@@ -151,9 +161,9 @@ class EdgeLoop:
         position = context.rig.index(self._camera)
         limit_hz = float(context.site.inference.max_rate_hz)
         fallback = default_control(self._camera, position, len(context.rig), context.start_ns, limit_hz)
-        self._plan = Plan(context.bus.subscribe(topics.control(self._camera), keep=1), fallback)
         now_ns = clock.now_ns()
         self._meter = Meter(context.name, os.getpid(), self._camera, t_report_ns=now_ns, t_picture_ns=now_ns)
+        self._plan = Plan(context.bus.subscribe(topics.control(self._camera), keep=1), fallback, self._meter.refused_plan)
         self._progress = _Progress()
 
     def run(self) -> None:
@@ -205,7 +215,10 @@ class EdgeLoop:
         now_ns = self._clock.now_ns()
         if not self._meter.is_due(now_ns):
             return
-        problem = "; ".join(filter(None, (self._source.problem, self._library.problem, self._plan.problem)))
-        network = self._library.current
-        health = self._meter.report(now_ns, control.rate_hz, network, problem, self._context.resources())
+        found: tuple[tuple[CameraCode, str], ...] = (
+            ("camera_faulty", self._source.problem),
+            ("network_missing", self._library.problem),
+        )
+        troubles = tuple(Trouble(code, words) for code, words in found if words)
+        health = self._meter.report(now_ns, control.rate_hz, self._library.current, troubles, self._context.resources())
         self._context.bus.publish(topics.health(self._context.name), codec.encode(health))

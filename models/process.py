@@ -81,7 +81,7 @@ class Resources(NamedTuple):
     """What this process used: CPU seconds a second since the call before, and resident memory now."""
 
     cpu_cores: float
-    rss_mb: float
+    rss_mib: float
 
 
 class Playback(msgspec.Struct, frozen=True):

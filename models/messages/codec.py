@@ -16,7 +16,7 @@ from models.messages.lesson import FusionLog, LessonRequest, SegmentRequest
 from models.messages.motion import Motion
 from models.messages.observation import Observation
 
-VERSION = 1
+VERSION = 2
 Message = Observation | Motion | ViewControl | Health | FusionLog | SegmentRequest | LessonRequest
 MessageT = TypeVar("MessageT", bound=Message)
 

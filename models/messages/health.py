@@ -4,8 +4,9 @@ from typing import Literal
 
 import msgspec
 
-GETTING_READY = "getting ready: the first start after an update compiles for some minutes"
-"""The reason of a process whose loop has yet to begin. Until another word comes, it is starting, and not to be taken for hung."""
+from models.messages.trouble import Trouble, one_line
+
+State = Literal["starting", "ok", "degraded", "failed"]
 
 
 class CameraHealth(msgspec.Struct, frozen=True):
@@ -16,7 +17,7 @@ class CameraHealth(msgspec.Struct, frozen=True):
         fresh_hz: pose inferences a second on new frames.
         target_hz: what the governor asked for.
         skipped: due frames, since the start, that were dropped because a newer one was already there.
-        backlog_ms: age of the newest frame when its turn came.
+        backlog_ms: age of a frame when its turn came; of the oldest one in the second.
         network: pose network in use.
         stage_ms: CPU milliseconds a processed frame by stage ("decode", "detect", "crop", "pose", ...).
     """
@@ -58,14 +59,14 @@ class RecorderHealth(msgspec.Struct, frozen=True):
         lesson: the running lesson's name, by which `kinebox replay` finds it; empty while nothing is recorded.
         title: what people call it.
         recorded_s: length of what is safe on disk.
-        size_mb: of the file.
+        size_bytes: of the file.
         gaps: interruptions since the lesson began.
     """
 
     lesson: str
     title: str
     recorded_s: float
-    size_mb: float
+    size_bytes: int
     gaps: int
 
 
@@ -88,8 +89,8 @@ class MachineHealth(msgspec.Struct, frozen=True):
 
     Attributes:
         used_cores, granted_cores: CPU in use, by whomever, and what the box may use.
-        memory_free_mb: memory that can be had without swapping.
-        disk_free_mb: room where lessons and logs are kept.
+        memory_free_mib: memory that can be had without swapping.
+        disk_free_mib: room where lessons and logs are kept.
         temperature_c: of the processor; None where the machine does not say.
         wall_minus_monotonic_ns: CLOCK_REALTIME less CLOCK_MONOTONIC.
         clock_step_ms: how far the wall clock was set, forwards positive, in the last minute; 0 if it was not.
@@ -98,8 +99,8 @@ class MachineHealth(msgspec.Struct, frozen=True):
 
     used_cores: float
     granted_cores: float
-    memory_free_mb: float
-    disk_free_mb: float
+    memory_free_mib: float
+    disk_free_mib: float
     temperature_c: float | None
     wall_minus_monotonic_ns: int
     clock_step_ms: float
@@ -112,7 +113,7 @@ class Restarts(msgspec.Struct, frozen=True):
     Attributes:
         last_ns: CLOCK_MONOTONIC of the last time.
         reason: what became of it then, as a verb ("was ended by SIGKILL", "hung").
-        given_up: why it is not started any more; empty if it is.
+        given_up: why it is not started any more; empty as long as it is.
     """
 
     process: str
@@ -129,35 +130,43 @@ class SupervisorHealth(msgspec.Struct, frozen=True):
         version: of the KineBox that runs.
         started_ns: CLOCK_MONOTONIC of the box's start.
         restarts: one entry for every process that ended since; empty if none did.
-        log_problem: why nothing can be kept in the log, and what to do, in one line; empty if all is kept.
     """
 
     version: str
     started_ns: int
     restarts: tuple[Restarts, ...]
-    log_problem: str = ""
 
 
 class Health(msgspec.Struct, frozen=True):
     """State of one process, published about once a second on its own topic.
 
     Attributes:
-        process: "edge-<camera>", "fusion", "tablet", "supervisor".
-        state: "ok", "degraded" (works, less than wished; `reason` says why), "failed".
-        reason: one line for the teacher or the technician; empty when ok.
+        process: "edge-<camera>", "fusion", "tablet", "recorder", "supervisor", or "replay" in the place of the first two.
+        state: "starting" (its loop has yet to begin, for which it has as much time as it needs), "ok", "degraded" (works, less than
+            wished), "failed" (does not work any more).
+        troubles: why it is not "ok"; empty if and only if it is.
         cpu_cores: CPU seconds a second of this process.
     """
 
     process: str
     pid: int
     t_ns: int
-    state: Literal["ok", "degraded", "failed"]
-    reason: str
+    state: State
+    troubles: tuple[Trouble, ...]
     cpu_cores: float
-    rss_mb: float
+    rss_mib: float
     camera: CameraHealth | None = None
     fusion: FusionHealth | None = None
     recorder: RecorderHealth | None = None
     machine: MachineHealth | None = None
     replay: ReplayHealth | None = None
     supervisor: SupervisorHealth | None = None
+
+    def __post_init__(self) -> None:
+        if (self.state == "ok") == bool(self.troubles):
+            raise ValueError(f"state '{self.state}' with {len(self.troubles)} troubles")
+
+    @property
+    def reason(self) -> str:
+        """The troubles in one line for the teacher or the technician; empty when ok. Programs go by the codes."""
+        return one_line(self.troubles)

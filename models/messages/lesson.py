@@ -80,7 +80,7 @@ class SegmentRequest(msgspec.Struct, frozen=True):
 
 
 class LessonRequest(msgspec.Struct, frozen=True):
-    """Begin or end a lesson (command line, tablet -> recorder).
+    """Begin or end a lesson (command line -> recorder).
 
     Attributes:
         action: "start" while one is being recorded changes nothing.

@@ -29,7 +29,7 @@ def segment_request() -> str:
 
 
 def lesson_request() -> str:
-    """command line, tablet -> recorder"""
+    """command line -> recorder"""
     return f"{ROOM}/lesson/request"
 
 

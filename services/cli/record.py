@@ -12,7 +12,7 @@ from models.messages.health import RecorderHealth
 from services.cli.duration import clock
 from services.cli.progress import ProgressLine
 from services.lesson.layout import SUFFIX
-from services.lesson.remote import Remote, join, require_title
+from services.lesson.remote import Remote, join, refused, require_title
 from services.support.signals import stop_on_signals
 
 _ROUND_S = 0.25
@@ -79,7 +79,7 @@ def _watch(remote: Remote, lesson: str, seconds: float | None, stop: Event) -> R
             if health is not None and health.recorder is not None:
                 heard_s = now_s
                 if health.recorder.lesson != lesson:
-                    if health.reason:
+                    if refused(health):
                         raise UserError(health.reason)
                     return last or health.recorder
                 last = health.recorder
@@ -96,7 +96,7 @@ def _line(recorder: RecorderHealth | None, reason: str) -> str:
     if recorder is None:
         return f"waiting for the first second{f'; {reason}' if reason else ''}"
     gaps = f", {_gaps(recorder.gaps)}" if recorder.gaps else ""
-    return f"recorded {clock(recorder.recorded_s)}, {recorder.size_mb:.1f} MB{gaps}{f'; {reason}' if reason else ''}"
+    return f"recorded {clock(recorder.recorded_s)}, {recorder.size_bytes / 1e6:.1f} MB{gaps}{f'; {reason}' if reason else ''}"
 
 
 def _recorded(lesson: str, last: RecorderHealth | None, site: Site, data: Path) -> str:

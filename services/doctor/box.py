@@ -5,13 +5,14 @@ Pure: everything was gathered before.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 from models.config.site import Site
 from models.messages.health import MachineHealth, Restarts, SupervisorHealth
+from models.messages.trouble import CALIBRATION_CODES, MACHINE_CODES, Trouble, TroubleCode
 from models.process import EDGE, ROUTER, process_name
-from services.doctor.agreement import judge_agreement
 from services.doctor.cameras import is_held_up, judge_camera
-from services.doctor.finding import Examined, Fact, Finding, Level, fault_of
+from services.doctor.finding import Examined, Fact, Finding, Level
 from services.doctor.listen import Heard
 from services.doctor.machine import machine_finding
 from services.doctor.processes import RunningBox
@@ -24,6 +25,12 @@ SLOW_SHARE = 0.8
 SUPERVISOR = "supervisor"
 _LISTENED = "listening to the bus"
 _SUPERVISORS_WORD = "the supervisor's word"
+_FOUND_OTHERWISE: frozenset[TroubleCode] = frozenset({"camera_unheard", "given_up", "restarting", *MACHINE_CODES})
+"""What processes say of one another, and of the machine, is in what was found before."""
+_PLACES: dict[TroubleCode, str] = {"log_not_kept": "log", **dict.fromkeys(CALIBRATION_CODES, "calibration")}
+"""Who says the other troubles is their place."""
+_LEVELS: dict[TroubleCode, Level] = {"log_not_kept": "fault"}
+"""The other troubles are warnings."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +39,7 @@ class BoxFacts:
 
     Attributes:
         site: the site file.
-        log: its log file.
+        data: the data folder, with its log.
         running: its processes, as the machine has them.
         expected: the names of all processes that a box of this site has, the supervisor too.
         heard: what it said.
@@ -41,7 +48,7 @@ class BoxFacts:
     """
 
     site: Site
-    log: str
+    data: Path
     running: RunningBox
     expected: tuple[str, ...]
     heard: Heard
@@ -64,7 +71,6 @@ def judge_box(box: BoxFacts) -> Examined:
         *_figures(box),
         *_unreadable(box),
         *_machine(box),
-        *_log(box),
         *_version(box),
     ]
     return Examined(tuple(findings), _facts(box))
@@ -89,7 +95,7 @@ def _router(box: BoxFacts) -> Iterator[Finding]:
     here = box.running.processes.get(ROUTER)
     if here is None:
         words = f"{ROUTER} is missing, and with it the bus: no figure is made and no process can be heard"
-        remedy = f"look for '{ROUTER} is given up' in {box.log} for the reason, mend it, and start the box anew"
+        remedy = f"read why (`{_log_of(SUPERVISOR, box)}`), mend that, and start the box anew"
         yield Finding("fault", ROUTER, words, "the machine's table of processes", remedy)
     elif not any(process.stopped for process in here):
         words = f"{ROUTER} (process {here[0].pid}) hangs: the bus does not answer, so no other process can be heard"
@@ -104,11 +110,11 @@ def _processes(box: BoxFacts) -> Iterator[Finding]:
             continue
         if name not in box.heard.alive:
             words = f"{name} is missing: it is not on the bus"
-            remedy = f"wait some seconds, it may be starting; if it stays so, read {box.log} and start the box anew"
+            remedy = f"wait some seconds, it may be starting; if it stays so, read `{_log_of(name, box)}` and start the box anew"
             yield Finding("fault", name, words, _LISTENED, remedy)
         elif name not in box.heard.healths:
             words = f"{name} hangs: it is on the bus and said nothing for {box.heard.seconds:.0f} s"
-            remedy = f"wait some seconds: the box restarts it; if it stays so, read {box.log} and start the box anew"
+            remedy = f"wait some seconds: the box restarts it; if it stays so, read `{_log_of(name, box)}` and start the box anew"
             yield Finding("fault", name, words, _LISTENED, remedy)
 
 
@@ -127,12 +133,12 @@ def _restarts(box: BoxFacts) -> Iterator[Finding]:
         ago_s = max(box.now_ns - each.last_ns, 0) * 1e-9
         if each.given_up:
             words = f"{each.process} is given up and does not run any more: {each.given_up}"
-            remedy = f"read what it said last (grep '\"{each.process}\"' {box.log}), mend that, and start the box anew"
+            remedy = f"read what it said last (`{_log_of(each.process, box)}`), mend that, and start the box anew"
             yield Finding("fault", each.process, words, _SUPERVISORS_WORD, remedy)
         elif each.count >= OFTEN or ago_s * 1e9 < RECENT_NS:
             times = "once" if each.count == 1 else f"{each.count} times"
             words = f"{each.process} was started again {times}; {_ago(ago_s)} ago it {each.reason}"
-            remedy = f"read what it said before (grep '\"{each.process}\"' {box.log}); once is no harm"
+            remedy = f"read what it said before (`{_log_of(each.process, box)}`); once is no harm"
             yield Finding("warning", each.process, words, "the supervisor's count", remedy)
 
 
@@ -140,7 +146,8 @@ def _page(box: BoxFacts) -> list[Finding]:
     if box.heard.page == "answers":
         return []
     words = f"the page at port {box.site.tablet.port} does not answer"
-    return [Finding("fault", "tablet", words, "asking it over HTTP", f"wait some seconds; if it stays so, read {box.log}")]
+    remedy = f"wait some seconds; if it stays so, read `{_log_of('tablet', box)}`"
+    return [Finding("fault", "tablet", words, "asking it over HTTP", remedy)]
 
 
 def _cameras(box: BoxFacts) -> Iterator[Finding]:
@@ -152,7 +159,6 @@ def _cameras(box: BoxFacts) -> Iterator[Finding]:
     else:
         for name, health in heard:
             yield from judge_camera(name, health, box.now_ns)
-    yield from judge_agreement(box.heard.agreements, (camera.name for camera in box.site.cameras), box.site.calibration)
 
 
 def _busy(box: BoxFacts) -> Finding:
@@ -170,22 +176,25 @@ def _busy(box: BoxFacts) -> Finding:
 
 
 def _own_words(box: BoxFacts) -> Iterator[Finding]:
-    """What processes say of themselves; the supervisor's and the cameras' words are in what was found before."""
+    """What processes say of themselves; the cameras' words are in what was found before."""
     for name, health in box.heard.healths.items():
-        told = any(each.process == name and each.given_up for each in _told(box))
-        if health.state == "ok" or told or name == SUPERVISOR or name.startswith(f"{EDGE}-"):
+        if name.startswith(f"{EDGE}-"):
             continue
-        # Who is not heard was found missing or hung already.
-        reasons = [reason for reason in health.reason.split("; ") if not reason.startswith("no word from")]
-        for reason in reasons:
-            level: Level = "fault" if health.state == "failed" else "warning"
-            yield Finding(level, name, f"{name} says: {reason}", "its health on the bus", _remedy_for(reason, box))
+        for trouble in health.troubles:
+            if trouble.code not in _FOUND_OTHERWISE:
+                yield _own_word(name, trouble, box)
 
 
-def _remedy_for(reason: str, box: BoxFacts) -> str:
-    if "epoch" in reason:
-        return "the cameras count their films' loops differently: start the box anew; if it stays so, cut the films to one length"
-    return f"see what else is found here, and read {box.log}"
+def _own_word(name: str, trouble: Trouble, box: BoxFacts) -> Finding:
+    place = _PLACES.get(trouble.code)
+    words = f"{name} says: {trouble.words}" if place is None else trouble.words
+    remedy = trouble.remedy or f"wait; if it stays so, read `{_log_of(name, box)}`"
+    return Finding(_LEVELS.get(trouble.code, "warning"), place or name, words, f"{name}'s word on the bus", remedy)
+
+
+def _log_of(process: str, box: BoxFacts) -> str:
+    """The command that shows what a process said, in all files of the log."""
+    return f"kinebox logs --data {box.data} --process {process}"
 
 
 def _figures(box: BoxFacts) -> Iterator[Finding]:
@@ -209,18 +218,12 @@ def _unreadable(box: BoxFacts) -> Iterator[Finding]:
 def _machine(box: BoxFacts) -> Iterator[Finding]:
     machine = _machine_of(box)
     for trouble in machine_troubles(machine) if machine is not None else ():
-        yield machine_finding(trouble.code, trouble.words, trouble.remedy)
+        yield machine_finding(trouble)
 
 
 def _machine_of(box: BoxFacts) -> MachineHealth | None:
     supervisor = box.heard.healths.get(SUPERVISOR)
     return supervisor.machine if supervisor is not None else None
-
-
-def _log(box: BoxFacts) -> Iterator[Finding]:
-    supervisor = _supervisor(box)
-    if supervisor is not None and supervisor.log_problem:
-        yield fault_of("log", supervisor.log_problem, _SUPERVISORS_WORD)
 
 
 def _version(box: BoxFacts) -> Iterator[Finding]:

@@ -7,13 +7,11 @@ from services.tablet.messages import CameraReason, CameraStatus
 
 _REMEDIES: dict[CameraReason, str] = {
     "no_frames": "check its cable, its power and its file; unplug it and plug it in again",
-    "degraded": "see what it says of itself; restart the box if it stays so",
     "behind": "end other programs on this machine, or lower inference.max_rate_hz in the site file",
     "backlog": "end other programs on this machine, or lower inference.cpu_target in the site file",
     "sparse": "the box is too slow for this many cameras: use fewer, or a faster box",
 }
-
-
+_ELSE = "see what else is found here; if it stays so, start the box anew"
 BUSY_REASONS: frozenset[CameraReason] = frozenset({"behind", "backlog", "sparse"})
 """Slowness that the box causes, not the camera."""
 
@@ -30,10 +28,11 @@ def judge_camera(name: str, health: Health, now_ns: int) -> list[Finding]:
         return []
     level: Level = "fault" if status.state == "lost" else "warning"
     known_by = "what its process measured in the last second"
-    remedy = _REMEDIES.get(status.reason, "read the log of its process")
-    if "black" in health.reason:
-        remedy = "take the cap off its lens, or turn on the light"
-    return [Finding(level, f"camera '{name}'", f"camera '{name}' {_words(status, health)}", known_by, remedy)]
+    where = f"camera '{name}'"
+    if status.reason == "degraded" and health.troubles:
+        return [Finding(level, where, each.words, "its health on the bus", each.remedy or _ELSE) for each in health.troubles]
+    remedy = _REMEDIES.get(status.reason, _ELSE)
+    return [Finding(level, where, f"{where} {_words(status, health)}", known_by, remedy)]
 
 
 def _status(name: str, health: Health, now_ns: int) -> CameraStatus:
@@ -42,12 +41,12 @@ def _status(name: str, health: Health, now_ns: int) -> CameraStatus:
 
 def _words(status: CameraStatus, health: Health) -> str:
     rates = f"{status.fresh_hz or 0:.1f} of {status.target_hz or 0:.0f} pictures a second are looked at"
-    own = f" ({health.reason})" if health.reason else ""
+    own = f" ({'; '.join(trouble.words for trouble in health.troubles)})" if health.troubles else ""
     words: dict[CameraReason, str] = {
         "no_frames": "is silent: it delivers no pictures",
         "behind": f"falls behind: {rates}",
         "backlog": f"falls behind: its pictures wait {status.backlog_ms or 0:.0f} ms for their turn",
         "sparse": f"is looked at too seldom for fast movement: {rates}",
-        "degraded": "works less well than it should",
+        "degraded": "works, but how well cannot be known: its figures are none",
     }
     return words.get(status.reason, f"is {status.state}") + own

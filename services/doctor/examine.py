@@ -81,5 +81,4 @@ def _box(order: Order, site: Site, own: RunningBox) -> Examined:
         return Examined((Finding("fault", "running box", f"it cannot be listened to: {error}", "joining its bus", remedy),))
     expected = (*(post.name for post in posts_of(site)), SUPERVISOR)
     heard = listen(site, frozenset(expected))
-    log = str(order.data / "logs" / "kinebox.log")
-    return judge_box(BoxFacts(site, log, own, expected, heard, kinebox_version(), time.monotonic_ns()))
+    return judge_box(BoxFacts(site, order.data, own, expected, heard, kinebox_version(), time.monotonic_ns()))

@@ -6,12 +6,11 @@ from typing import Literal
 
 from models.config.site import Site
 from models.messages import codec, topics
-from models.messages.addressed import read_health, read_observation
+from models.messages.addressed import read_health
 from models.messages.health import Health
 from models.messages.motion import Motion
 from models.process import Delivery
 from services.bus.join import join
-from services.doctor.agreement import Agreements
 from services.supervisor import page
 
 Answer = Literal["answers", "silent"]
@@ -19,7 +18,7 @@ Answer = Literal["answers", "silent"]
 LISTEN_S = 5.0
 """Health comes once a second; who is not heard in this time does not speak."""
 ENOUGH_S = 2.5
-"""If everybody was heard, this is long enough to judge rates and views."""
+"""If everybody was heard, this is long enough to judge rates."""
 _JOIN_S = 4.0
 _PAGE_S = 3.0
 _KEEP = 8
@@ -44,8 +43,6 @@ class Heard:
     healths: dict[str, Health] = field(default_factory=dict)
     alive: set[str] = field(default_factory=set)
     live: int = 0
-    epochs: dict[str, int] = field(default_factory=dict)
-    agreements: Agreements = field(default_factory=Agreements)
     unreadable: dict[str, int] = field(default_factory=dict)
 
     def take(self, delivery: Delivery) -> None:
@@ -53,12 +50,8 @@ class Heard:
         topic = delivery.topic
         try:
             if topic == topics.motion("live"):
+                codec.decode(delivery.payload, Motion)
                 self.live += 1
-                self.agreements.add_motion(codec.decode(delivery.payload, Motion))
-            elif topic.endswith("/observation"):
-                observation = read_observation(topic, delivery.payload)
-                self.epochs[observation.camera] = observation.epoch
-                self.agreements.add_observation(observation)
             else:
                 health = read_health(topic, delivery.payload)
                 self.healths[health.process] = health
@@ -83,8 +76,7 @@ def listen(site: Site, expected: frozenset[str]) -> Heard:
         return heard
     heard.bus = "answers"
     try:
-        cameras = [topics.observation(camera.name) for camera in site.cameras]
-        subscription = bus.subscribe(topics.ALL_HEALTH, topics.motion("live"), *cameras, keep=_KEEP)
+        subscription = bus.subscribe(topics.ALL_HEALTH, topics.motion("live"), keep=_KEEP)
         bus.watch_alive(topics.ALL_ALIVE, heard.note)
         began_s = time.monotonic()
         while heard.seconds < (ENOUGH_S if expected <= heard.healths.keys() else LISTEN_S):

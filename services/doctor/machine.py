@@ -11,15 +11,16 @@ from pathlib import Path
 import psutil
 
 from models.messages.health import MachineHealth
+from models.messages.trouble import Trouble, TroubleCode
 from services.doctor.finding import Examined, Fact, Finding, Level
 from services.support.machine import MachineMeter, Sensors
-from services.support.machine_troubles import MachineCode, machine_troubles, size_of
+from services.support.machine_troubles import machine_troubles, size_of
 from services.support.processor import processor
 
-_LEVEL: dict[MachineCode, Level] = {"disk_full": "fault", "memory_low": "fault", "hot": "fault"}
+_LEVEL: dict[TroubleCode, Level] = {"disk_full": "fault", "memory_low": "fault", "hot": "fault"}
 """The other troubles are warnings."""
-_PLACE: dict[MachineCode, str] = {"disk_full": "disk", "disk_low": "disk", "memory_low": "memory", "clock_set": "clock"}
-_KNOWN_BY: dict[MachineCode, str] = {
+_PLACE: dict[TroubleCode, str] = {"disk_full": "disk", "disk_low": "disk", "memory_low": "memory", "clock_set": "clock"}
+_KNOWN_BY: dict[TroubleCode, str] = {
     "disk_full": "the file system of the data folder",
     "disk_low": "the file system of the data folder",
     "memory_low": "the kernel's and the control group's count of free memory",
@@ -42,7 +43,7 @@ class MachineFacts:
     Attributes:
         processor, architecture, flags: its name, as `uname -m` has it, and what it can do.
         cores: that are there, whether the box may use them or not.
-        memory_mb: in all.
+        memory_mib: in all.
         wall: the machine's date and time.
         data: the data folder.
         data_problem: why nothing can be read from or written to the data folder; empty if both can.
@@ -53,7 +54,7 @@ class MachineFacts:
     architecture: str
     flags: frozenset[str]
     cores: int
-    memory_mb: float
+    memory_mib: float
     wall: dt.datetime
     data: Path
     data_problem: str
@@ -69,7 +70,7 @@ def gather_machine(data: Path, sensors: Sensors) -> MachineFacts:
         architecture=platform.machine(),
         flags=frozenset(found.features),
         cores=os.cpu_count() or 1,
-        memory_mb=psutil.virtual_memory().total / 2**20,
+        memory_mib=psutil.virtual_memory().total / 2**20,
         wall=dt.datetime.fromtimestamp(wall_ns * 1e-9, dt.UTC),
         data=data,
         data_problem=_try_folder(data),
@@ -78,22 +79,23 @@ def gather_machine(data: Path, sensors: Sensors) -> MachineFacts:
 
 def judge_machine(machine: MachineFacts) -> Examined:
     """What is wrong with it, and what it is."""
-    findings = [machine_finding(trouble.code, trouble.words, trouble.remedy) for trouble in machine_troubles(machine.health)]
+    findings = [machine_finding(trouble) for trouble in machine_troubles(machine.health)]
     findings += [finding for finding in (_architecture(machine), _cores(machine), _clock(machine), _folder(machine)) if finding]
     health = machine.health
     heat = "" if health.temperature_c is None else f", {health.temperature_c:.0f} °C"
     facts = (
         Fact("processor", f"{machine.processor}, {machine.cores} cores, of which the box may use {health.granted_cores:g}{heat}"),
-        Fact("memory", f"{size_of(machine.memory_mb)}, {size_of(health.memory_free_mb)} free"),
-        Fact("disk", f"{size_of(health.disk_free_mb)} free at {machine.data}"),
+        Fact("memory", f"{size_of(machine.memory_mib)}, {size_of(health.memory_free_mib)} free"),
+        Fact("disk", f"{size_of(health.disk_free_mib)} free at {machine.data}"),
         Fact("clock", f"{machine.wall:%d %b %Y, %H:%M:%S} UTC"),
     )
     return Examined(tuple(findings), facts)
 
 
-def machine_finding(code: MachineCode, words: str, remedy: str) -> Finding:
+def machine_finding(trouble: Trouble) -> Finding:
     """The finding for a trouble of a machine."""
-    return Finding(_LEVEL.get(code, "warning"), _PLACE.get(code, "processor"), words, _KNOWN_BY[code], remedy)
+    level, place = _LEVEL.get(trouble.code, "warning"), _PLACE.get(trouble.code, "processor")
+    return Finding(level, place, trouble.words, _KNOWN_BY[trouble.code], trouble.remedy)
 
 
 def _architecture(machine: MachineFacts) -> Finding | None:

@@ -17,6 +17,7 @@ import numpy as np
 from models.arrays import Float
 from models.camera.rig import Rig
 from models.messages.observation import Observation
+from models.messages.trouble import Trouble
 from services.fusion.config import SightingConfig
 from services.fusion.epipolar import Couples, fundamentals
 from services.fusion.views import Sighting, Views, sightings
@@ -65,16 +66,20 @@ class Disagreement:
     exchanged: tuple[tuple[str, str], ...]
     contradictory: bool
 
-    def __str__(self) -> str:
+    @property
+    def trouble(self) -> Trouble:
+        """What people are told of it."""
         if self.exchanged:
             pairs = ", or ".join(f"{a} and {b}" for a, b in self.exchanged)
-            return f"{pairs} seem to be exchanged: exchange their plugs, or their files in the site file"
+            remedy = "exchange their plugs, or their files in the site file"
+            return Trouble("cameras_exchanged", f"{pairs} seem to be exchanged", remedy)
         names = ", ".join(self.strangers)
         if self.contradictory:
-            return f"{names} do not agree with one another about where people are: calibrate anew, or correct which camera is which"
+            words = f"{names} do not agree with one another about where people are"
+            return Trouble("cameras_disagree", words, "calibrate anew, or correct which camera is which")
         verb = "does" if len(self.strangers) == 1 else "do"
         remedy = "move back what was moved, calibrate anew, or correct which camera is which"
-        return f"{names} {verb} not agree with the calibration: {remedy}"
+        return Trouble("camera_moved", f"{names} {verb} not agree with the calibration", remedy)
 
 
 class Agreement:

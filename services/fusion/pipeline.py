@@ -6,6 +6,7 @@ bit, so a recorded lesson replays through this code. The state is changed in pla
 
 import math
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
@@ -56,6 +57,10 @@ class FusionOutput:
     searching: dict[str, bool] = field(default_factory=dict)
 
 
+Ignored = Literal["not_calibrated", "of_the_future", "of_a_lone_epoch", "beyond_its_epoch", "of_a_past_epoch"]
+"""Why an observation is not fused."""
+
+
 @dataclass(eq=False)
 class FusionState:
     """Everything that fusion remembers.
@@ -77,7 +82,7 @@ class FusionState:
     tick_ns: int = 0
     grid: int | None = None
     sequences: dict[str, int] = field(default_factory=lambda: {"live": 0, "smooth": 0})
-    ignored: dict[tuple[str, str], int] = field(default_factory=dict)
+    ignored: dict[tuple[str, Ignored], int] = field(default_factory=dict)
     stragglers_s: dict[str, float] = field(default_factory=dict)
     outvoted: set[str] = field(default_factory=set)
 
@@ -92,7 +97,7 @@ def step(state: FusionState, event: Observation | Tick, config: FusionConfig) ->
     if isinstance(event, Tick):
         return state, _tick(state, event.t_ns, config)
     reason = _observe(state, event, config)
-    if reason:
+    if reason is not None:
         state.ignored[event.camera, reason] = state.ignored.get((event.camera, reason), 0) + 1
     return state, FusionOutput(found=bool(state.epochs) and state.epochs[-1].pupil is not None)
 
@@ -103,26 +108,26 @@ def predict_views(state: FusionState, t_ns: int) -> dict[str, CropPrediction | N
     return {camera.name: None if pupil is None else predict_crop(pupil, camera, t_ns) for camera in state.views.rig}
 
 
-def _observe(state: FusionState, observation: Observation, config: FusionConfig) -> str:
+def _observe(state: FusionState, observation: Observation, config: FusionConfig) -> Ignored | None:
     """Fuse an observation, or say why not."""
     t_s = observation.t_mid_ns * 1e-9
     if observation.camera not in state.views.index:
-        return "camera not in the calibration"
+        return "not_calibrated"
     if state.tick_ns and t_s > state.tick_ns * 1e-9 + _MAX_FUTURE_S:
-        return "from the future"
+        return "of_the_future"
     if not state.epochs or observation.epoch > state.epochs[-1].epoch:
         if observation.camera in state.outvoted:
-            return "of an epoch that no other camera shows"
+            return "of_a_lone_epoch"
         _open_epoch(state, observation.epoch, t_s)
     for index, reconstruction in enumerate(state.epochs):
         if reconstruction.epoch == observation.epoch:
             if index + 1 < len(state.epochs) and t_s >= state.seams_s[index + 1]:
-                return "beyond its epoch's end"
+                return "beyond_its_epoch"
             persons = sightings(observation, state.views, config.sighting)
             reconstruction.observe(state.views.index[observation.camera], t_s, persons, config)
             state.seams_s[index] = min(state.seams_s[index], t_s)
             state.outvoted.discard(observation.camera)
-            return ""
+            return None
     state.stragglers_s[observation.camera] = t_s
     if _outvoted(state, t_s):
         newest_s = state.epochs[-1].newest_s
@@ -130,7 +135,7 @@ def _observe(state: FusionState, observation: Observation, config: FusionConfig)
         state.epochs.clear()
         state.seams_s.clear()
         state.stragglers_s.clear()
-    return "of a past epoch"
+    return "of_a_past_epoch"
 
 
 def _outvoted(state: FusionState, t_s: float) -> bool:

@@ -13,13 +13,14 @@ from models.messages.health import CameraHealth, FusionHealth
 from models.messages.lesson import SegmentRequest
 from models.messages.motion import Motion
 from models.messages.observation import Observation
+from models.messages.trouble import Trouble, messages_refused
 from models.process import Delivery, ProcessContext
 from services.fusion import governor
 from services.fusion.agreement import Agreement, Disagreement
 from services.fusion.config import PRESETS
 from services.fusion.governor import GovernorState, Load
 from services.fusion.log import SegmentLog
-from services.fusion.pipeline import FusionOutput, Tick, initial_state, predict_views, step
+from services.fusion.pipeline import FusionOutput, Ignored, Tick, initial_state, predict_views, step
 from services.fusion.warm_up import warm_up
 from services.support.cpu import CpuMeter
 from services.support.health import HealthReporter
@@ -32,6 +33,16 @@ CAMERA_SILENT_NS = 3 * SECOND_NS
 """A camera whose health is older than this takes no part in the governor's plan."""
 
 _LATE_AT_SEAM = 2
+_EPOCHS = "the cameras count their films' loops differently: start the box anew; if it stays so, cut the films to one length"
+_CLOCK = "its clock is wrong: unplug it and plug it in again"
+_IGNORED: dict[Ignored, Trouble] = {
+    "not_calibrated": Trouble("pictures_not_fused", "are of a camera that is not in the calibration", "calibrate it"),
+    "of_the_future": Trouble("pictures_not_fused", "are from the future", _CLOCK),
+    "of_a_lone_epoch": Trouble("epochs_differ", "are of an epoch that no other camera shows", _EPOCHS),
+    "beyond_its_epoch": Trouble("epochs_differ", "are beyond their epoch's end", _EPOCHS),
+    "of_a_past_epoch": Trouble("epochs_differ", "are of a past epoch", _EPOCHS),
+}
+"""What is said of a camera whose pictures are not fused."""
 
 log = structlog.get_logger()
 
@@ -55,9 +66,9 @@ class _Second:
     ticks: int = 0
     spent_ns: int = 0
     rejected: int = 0
-    ignored_before: dict[tuple[str, str], int] = field(default_factory=dict)
+    ignored_before: dict[tuple[str, Ignored], int] = field(default_factory=dict)
 
-    def ignored(self, total: dict[tuple[str, str], int]) -> dict[tuple[str, str], int]:
+    def ignored(self, total: dict[tuple[str, Ignored], int]) -> dict[tuple[str, Ignored], int]:
         """Observations that were not fused since the second began, by camera and reason."""
         new = {key: count - self.ignored_before.get(key, 0) for key, count in total.items()}
         return {key: count for key, count in new.items() if count}
@@ -195,7 +206,7 @@ class FusionLoop:
         judging_ns = time.thread_time_ns()
         disagreement = self._agreement.judge()
         self._second.spent_ns += time.thread_time_ns() - judging_ns
-        reason = _trouble([name for name in self._names if name not in alive], ignored, second.rejected, disagreement)
+        troubles = _troubles([name for name in self._names if name not in alive], ignored, second.rejected, disagreement)
         fusion = FusionHealth(
             live_hz=second.live / seconds,
             step_ms=second.spent_ns * 1e-6 / max(second.ticks, 1),
@@ -204,7 +215,7 @@ class FusionLoop:
             ignored={camera: sum(n for (name, _), n in ignored.items() if name == camera) for camera, _ in ignored},
             pupil="found" if self._found else "searching",
         )
-        self._reporter.report("degraded" if reason else "ok", reason, fusion=fusion)
+        self._reporter.report("degraded" if troubles else "ok", troubles, fusion=fusion)
 
     def _govern(self, load: Load, now_ns: int) -> None:
         inference, before = self._context.site.inference, self._governor
@@ -214,14 +225,17 @@ class FusionLoop:
             log.info("governor", rate_hz=level.rate_hz, network=level.network, used_cores=round(load.used_cores, 2))
 
 
-def _trouble(
-    missing: list[str], ignored: dict[tuple[str, str], int], rejected: int, disagreement: Disagreement | None = None
-) -> str:
-    """What is wrong, in one line; empty if nothing is. A few observations are late at every seam."""
-    troubles = [f"no word from {', '.join(missing)}"] if missing else []
-    troubles += [
-        f"{camera} is not fused: its pictures are {reason}" for (camera, reason), n in ignored.items() if n > _LATE_AT_SEAM
-    ]
-    troubles += [str(disagreement)] if disagreement is not None else []
-    troubles += [f"{rejected} messages could not be read"] if rejected else []
-    return "; ".join(troubles)
+def _troubles(
+    missing: list[str], ignored: dict[tuple[str, Ignored], int], rejected: int, disagreement: Disagreement | None = None
+) -> tuple[Trouble, ...]:
+    """What is wrong. A few observations are late at every seam."""
+    found = [Trouble("camera_unheard", f"no word from {', '.join(missing)}")] if missing else []
+    found += [_not_fused(camera, reason) for (camera, reason), n in ignored.items() if n > _LATE_AT_SEAM]
+    found += [disagreement.trouble] if disagreement is not None else []
+    found += [messages_refused(rejected)] if rejected else []
+    return tuple(found)
+
+
+def _not_fused(camera: str, reason: Ignored) -> Trouble:
+    trouble = _IGNORED[reason]
+    return Trouble(trouble.code, f"{camera} is not fused: its pictures {trouble.words}", trouble.remedy)

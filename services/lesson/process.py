@@ -10,6 +10,7 @@ from models.camera.rig import encode_rig
 from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.lesson import FusionLog, LessonRequest
+from models.messages.trouble import messages_refused
 from models.process import Delivery, ProcessContext
 from services.lesson import origin
 from services.lesson.lesson_header import LessonHeader
@@ -70,7 +71,7 @@ class RecorderLoop:
         self._reporter = HealthReporter(context.name, context.bus, context.resources)
         # Listening first, so that a wish that is uttered while lessons are recovered is not lost.
         self._subscription = self._bus.subscribe(topics.fusion_log(), topics.lesson_request(), keep=KEEP)
-        with getting_ready(context.name, self._bus):
+        with getting_ready(context.name, self._bus, "lessons that were cut short are completed"):
             unfinished = recover(folder, context.start_ns)
         self._recorder = Recorder(folder, context.site.lessons, self._header, unfinished)
 
@@ -109,10 +110,10 @@ class RecorderLoop:
         request = self._recorder.look_after()
         if request is not None:
             self._bus.publish(topics.segment_request(), codec.encode(request))
-        troubles = [self._recorder.trouble, f"{self._rejected} messages could not be read" if self._rejected else ""]
-        reason = "; ".join(trouble for trouble in troubles if trouble)
+        refused = messages_refused(self._rejected) if self._rejected else None
+        troubles = tuple(filter(None, (self._recorder.trouble, refused)))
         self._rejected = 0
-        self._reporter.report("degraded" if reason else "ok", reason, recorder=self._recorder.health())
+        self._reporter.report("degraded" if troubles else "ok", troubles, recorder=self._recorder.health())
 
     def _header(self, title: str) -> LessonHeader:
         wall_ns, monotonic_ns = clocks_ns()

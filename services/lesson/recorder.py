@@ -16,11 +16,12 @@ import structlog
 from models.config.site import LessonsConfig
 from models.messages.health import RecorderHealth
 from models.messages.lesson import FusionLog, SegmentRequest
+from models.messages.trouble import Trouble
 from services.lesson.following import Following
 from services.lesson.index import LessonIndex
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_header import LessonHeader
-from services.support.machine import free_disk_mb
+from services.support.machine import free_disk_mib
 
 AUTOMATIC_TITLE = "Recorded automatically"
 SILENT_NS = 5_000_000_000
@@ -31,6 +32,7 @@ RETRY_NS = 30_000_000_000
 log = structlog.get_logger()
 
 _NAME_LENGTH = 40
+_REMOVE = "remove lessons that are not needed"
 
 
 @dataclass
@@ -64,7 +66,7 @@ class Recorder:
         self._header = header
         self._clock_ns = clock_ns
         self._automatic_ns: int | None = clock_ns() if config.automatic else None
-        self._ended = ""
+        self._ended: Trouble | None = None
         self._running: _Running | None = None
         if unfinished is not None:
             self._begin(unfinished, "the recorder was started again")
@@ -73,29 +75,29 @@ class Recorder:
         """Begin a lesson, unless one is being recorded."""
         if self._running is not None:
             return
-        free_mb = free_disk_mb(self._folder)
+        free_mb = self._free_mb()
         if free_mb < self._config.least_free_mb:
-            self._trouble(f"no lesson was begun: {self._too_full(free_mb)}")
+            self._trouble(f"no lesson was begun: {self._too_full(free_mb)}", _REMOVE)
             return
         header = self._header(title)
         try:
             writer = self._create(header)
         except OSError as error:
-            self._trouble(f"no lesson was begun: {error.strerror} at {self._folder}; make room or correct lessons.folder")
+            self._trouble(f"no lesson was begun: {error.strerror} at {self._folder}", "make room or correct lessons.folder")
             return
-        self._ended = ""
+        self._ended = None
         self._begin(writer)
         log.info("lesson begins", lesson=_name(writer), title=title)
 
     def stop(self) -> None:
         """End the lesson, if one is being recorded; in this run no automatic one begins any more."""
         self._automatic_ns = None
-        self._ended = ""
-        self._finish("")
+        self._ended = None
+        self._finish()
 
     def close(self) -> None:
         """The box ends: the lesson is finished."""
-        self._finish("")
+        self._finish()
 
     def take(self, part: FusionLog) -> None:
         """A part of fusion's log was heard."""
@@ -113,7 +115,7 @@ class Recorder:
         try:
             running.writer.append(part, accepted.gap)
         except OSError as error:
-            self._finish(f"{error.strerror}; make room on the disk or replace it")
+            self._finish(error.strerror or str(error), "make room on the disk or replace it")
             return
         if accepted.gap:
             log.warning("gap in the lesson", lesson=_name(running.writer), reason=accepted.gap)
@@ -124,33 +126,34 @@ class Recorder:
             self.start(AUTOMATIC_TITLE)
         if self._running is None:
             return None
-        free_mb = free_disk_mb(self._folder)
+        free_mb = self._free_mb()
         if free_mb < self._config.least_free_mb:
-            self._finish(self._too_full(free_mb))
+            self._finish(self._too_full(free_mb), _REMOVE)
             return None
         return self._running.following.request
 
     @property
-    def trouble(self) -> str:
-        """What is wrong, in one line; empty if nothing is."""
+    def trouble(self) -> Trouble | None:
+        """What is wrong; None if nothing is."""
         running = self._running
         if running is None:
             return self._ended
         if self._clock_ns() - running.heard_ns > SILENT_NS:
-            return f"lesson {_name(running.writer)} stands still: nothing is heard of fusion"
-        return ""
+            words = f"lesson {_name(running.writer)} stands still: nothing is heard of fusion"
+            return Trouble("recording_stalled", words, "wait some seconds: it goes on when the figure does")
+        return None
 
     def health(self) -> RecorderHealth:
         """What is being recorded."""
         running = self._running
         if running is None:
-            return RecorderHealth(lesson="", title="", recorded_s=0.0, size_mb=0.0, gaps=0)
+            return RecorderHealth(lesson="", title="", recorded_s=0.0, size_bytes=0, gaps=0)
         writer = running.writer
         return RecorderHealth(
             lesson=_name(writer),
             title=writer.header.title,
             recorded_s=writer.recorded_s,
-            size_mb=writer.size / 1e6,
+            size_bytes=writer.size,
             gaps=writer.gaps,
         )
 
@@ -158,36 +161,39 @@ class Recorder:
         now_ns = self._clock_ns()
         self._running = _Running(writer, Following(SegmentRequest(now_ns), gap), heard_ns=now_ns)
 
-    def _finish(self, why: str) -> None:
-        """End the lesson; `why` it had to end, if nobody wished it."""
+    def _finish(self, why: str = "", remedy: str = "") -> None:
+        """End the lesson; `why` it had to end, if nobody wished it, and what to do."""
         running, self._running = self._running, None
         if running is None:
             return
         writer = running.writer
         name = _name(writer)
         if why:
-            self._trouble(f"lesson {name} ended: {why}")
+            self._trouble(f"lesson {name} ended: {why}", remedy)
         try:
             path = writer.finish()
         except OSError as error:
             writer.close()
-            self._trouble(
-                f"lesson {name} ended: {error.strerror}; make room on the disk, and the next start of KineBox completes it"
-            )
+            self._trouble(f"lesson {name} ended: {error.strerror}", "make room on the disk: the next start of KineBox completes it")
         else:
             LessonIndex(self._folder).note(writer, path)
         log.info("lesson ends", lesson=name, seconds=round(writer.recorded_s, 1), mb=round(writer.size / 1e6, 2), gaps=writer.gaps)
 
-    def _trouble(self, text: str) -> None:
-        if text != self._ended:
-            log.warning("not recording", reason=text)
-        self._ended = text
+    def _trouble(self, words: str, remedy: str) -> None:
+        trouble = Trouble("not_recording", words, remedy)
+        if trouble != self._ended:
+            log.warning("not recording", reason=words, remedy=remedy)
+        self._ended = trouble
         if self._automatic_ns is not None:
             self._automatic_ns = self._clock_ns() + RETRY_NS
 
+    def _free_mb(self) -> float:
+        """In the unit of the site file."""
+        return free_disk_mib(self._folder) * 2**20 / 1e6
+
     def _too_full(self, free_mb: float) -> str:
         least_mb = self._config.least_free_mb
-        return f"{free_mb:.0f} MB are left on the disk, lessons.least_free_mb is {least_mb}; remove lessons that are not needed"
+        return f"{free_mb:.0f} MB are left on the disk, lessons.least_free_mb is {least_mb}"
 
     def _create(self, header: LessonHeader) -> LessonWriter:
         taken = {path.name.split(".")[0] for path in self._folder.iterdir()}

@@ -99,10 +99,15 @@ class Remote:
             if done(health.recorder):
                 return health.recorder
             # What it says at first may be about the time before.
-            if health.reason and health.t_ns * 1e-9 > asked_s + _REFUSED_AFTER_S:
+            if refused(health) and health.t_ns * 1e-9 > asked_s + _REFUSED_AFTER_S:
                 raise UserError(f"the recorder cannot {what}: {health.reason}")
         reason = f": {self.newest.reason}" if self.newest is not None and self.newest.reason else ""
         raise UserError(f"the recorder did not {what} within {DONE_WITHIN_S:g} s{reason}")
+
+
+def refused(health: Health) -> bool:
+    """Whether the recorder says that it cannot record; other troubles that it may have keep it from nothing."""
+    return any(trouble.code == "not_recording" for trouble in health.troubles)
 
 
 def join(endpoint: str) -> Bus:

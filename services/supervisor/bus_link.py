@@ -1,12 +1,11 @@
 """The supervisor on the bus. It joins beside its loop, since the router is a process that the loop has yet to start."""
 
-import contextlib
 import threading
-from typing import Literal
 
 from models.messages import codec, topics
 from models.messages.addressed import read_health
-from models.messages.health import Health, MachineHealth, SupervisorHealth
+from models.messages.health import Health, MachineHealth, State, SupervisorHealth
+from models.messages.trouble import Trouble, messages_refused
 from models.process import Bus, Subscription
 from services.support.health import HealthReporter, ResourceMeter
 from services.support.heartbeat import Beat, read_beat
@@ -16,22 +15,28 @@ _KEEP = 4
 _AGAIN_S = 0.2
 
 
-def unread_healths(subscription: Subscription) -> list[Health]:
-    """What a subscription to health has for us now. Who speaks unintelligibly is silent, and treated as such."""
+def unread_healths(subscription: Subscription) -> tuple[list[Health], int]:
+    """What a subscription to health has for us now, and how many messages could not be read: who sends them is silent to us."""
     healths: list[Health] = []
+    refused = 0
     while (delivery := subscription.receive(0.0)) is not None:
-        with contextlib.suppress(codec.CodecError):
+        try:
             healths.append(read_health(delivery.topic, delivery.payload))
-    return healths
+        except codec.CodecError:
+            refused += 1
+    return healths, refused
 
 
-def unread_beats(subscription: Subscription) -> list[tuple[str, Beat]]:
-    """What a subscription to beats has for us now, by process. What is no beat is not counted as one."""
+def unread_beats(subscription: Subscription) -> tuple[list[tuple[str, Beat]], int]:
+    """What a subscription to beats has for us now, by process; and how much came that is no beat."""
     beats: list[tuple[str, Beat]] = []
+    refused = 0
     while (delivery := subscription.receive(0.0)) is not None:
         if (beat := read_beat(delivery.payload)) is not None:
             beats.append((topics.process_of(delivery.topic), beat))
-    return beats
+        else:
+            refused += 1
+    return beats, refused
 
 
 class BusLink:
@@ -45,6 +50,7 @@ class BusLink:
         self.present: set[str] = set()
         """The processes that are at work: got ready, and on the bus."""
         self._endpoint = endpoint
+        self._refused = 0
         self._stop = threading.Event()
         self._bus: Bus | None = None
         self._subscription: Subscription | None = None
@@ -55,31 +61,41 @@ class BusLink:
 
     def heard(self) -> list[Health]:
         """What has come in since the last call."""
-        return [] if self._subscription is None else unread_healths(self._subscription)
+        if self._subscription is None:
+            return []
+        healths, refused = unread_healths(self._subscription)
+        self._refused += refused
+        return healths
 
     def beats(self) -> list[tuple[str, Beat]]:
         """The processes whose loops have said since the last call that they go round, or that they end."""
-        return [] if self._beats is None else unread_beats(self._beats)
+        if self._beats is None:
+            return []
+        beats, refused = unread_beats(self._beats)
+        self._refused += refused
+        return beats
 
     def say(
-        self, fault: str, trouble: str, failed: dict[str, str], machine: MachineHealth | None, supervisor: SupervisorHealth
+        self, troubles: tuple[Trouble, ...], failed: dict[str, Trouble], machine: MachineHealth | None, supervisor: SupervisorHealth
     ) -> None:
         """Once a second, publish how the box is held together.
 
         Args:
-            fault: what is given up; makes the state "failed".
-            trouble: what is being mended, or is wrong with the machine; makes it "degraded".
-            failed: reasons by name of the processes that are given up, for which nobody else speaks now.
+            troubles: what is being mended, or is wrong with the machine; makes the state "degraded".
+            failed: why, by name, processes are given up, for which nobody else speaks now; makes it "failed".
             machine: its newest measurement.
             supervisor: what became of the processes.
         """
         bus, reporter = self._bus, self._reporter
         if bus is None or reporter is None or not reporter.due():
             return
-        state: Literal["ok", "degraded", "failed"] = "failed" if fault else "degraded" if trouble else "ok"
-        own = reporter.report(state, fault or trouble, machine=machine, supervisor=supervisor)
-        for name, reason in failed.items():
-            message = Health(name, own.pid, own.t_ns, "failed", reason, cpu_cores=0.0, rss_mb=0.0)
+        refused, self._refused = self._refused, 0
+        troubles = (*troubles, messages_refused(refused)) if refused else troubles
+        given_up = tuple(Trouble("given_up", f"{name} is given up: {trouble.words}") for name, trouble in failed.items())
+        state: State = "failed" if failed else "degraded" if troubles else "ok"
+        own = reporter.report(state, (*given_up, *troubles), machine=machine, supervisor=supervisor)
+        for name, trouble in failed.items():
+            message = Health(name, own.pid, own.t_ns, "failed", (trouble,), cpu_cores=0.0, rss_mib=0.0)
             bus.publish(topics.health(name), codec.encode(message))
 
     def close(self) -> None:

@@ -17,6 +17,7 @@ import msgspec
 
 from models.config.site import LogsConfig
 from models.errors import USER_ERROR_PREFIX
+from models.messages.trouble import Trouble, one_line
 from services.logs.files import LATEST
 from services.logs.readable import details, printable, speaker
 from services.logs.record import LogRecord, record_of
@@ -42,7 +43,7 @@ class Journal:
         command: shows what is kept.
 
     Attributes:
-        problem: why nothing can be kept now, and what to do, in one line; empty if all is.
+        trouble: why nothing can be kept now, and what to do; None if all is.
     """
 
     def __init__(
@@ -54,7 +55,7 @@ class Journal:
         self._tracebacks: dict[str, TracebackLines] = defaultdict(TracebackLines)
         self._writer = LogWriter(folder, int(config.max_file_mb * 1e6), config.max_files)
         self._next_try_s = time.monotonic() + _TRY_AGAIN_S
-        self.problem = ""
+        self.trouble: Trouble | None = None
         self._tell_problem()
 
     def child_said(self, process: str, line: str) -> None:
@@ -72,7 +73,7 @@ class Journal:
         for process, traceback in self._tracebacks.items():
             if traceback.is_over(now_s):
                 self._end_traceback(process)
-        if self.problem and now_s >= self._next_try_s:
+        if self.trouble is not None and now_s >= self._next_try_s:
             self._next_try_s = now_s + _TRY_AGAIN_S
             self._writer.try_again(_now())
             self._tell_problem()
@@ -114,23 +115,23 @@ class Journal:
     def _keep(self, record: LogRecord, *, shown: bool = False) -> None:
         self._writer.write(record)
         self._tell_problem()
-        if shown or self.problem or record.level in _LOUD:
+        if shown or self.trouble is not None or record.level in _LOUD:
             self._show(record)
 
     def _tell_problem(self) -> None:
-        reason, before = self._writer.problem, self.problem
-        remedy = "" if reason == IN_USE else f"; {_REMEDY}"
-        self.problem = f"nothing is kept in {self.path}: {reason}{remedy}" if reason else ""
-        if self.problem and not before:
-            self._show(record_of({"event": self.problem, "level": "warning"}, _SUPERVISOR, _now()))
-        elif before and not self.problem:
+        reason, before = self._writer.problem, self.trouble
+        remedy = "" if reason == IN_USE else _REMEDY
+        self.trouble = Trouble("log_not_kept", f"nothing is kept in {self.path}: {reason}", remedy) if reason else None
+        if self.trouble is not None and before is None:
+            self._show(record_of({"event": one_line((self.trouble,)), "level": "warning"}, _SUPERVISOR, _now()))
+        elif before is not None and self.trouble is None:
             self._show(record_of({"event": f"what is said is kept in {self.path} again"}, _SUPERVISOR, _now()))
 
     def _show(self, record: LogRecord) -> None:
         clock = record.time.astimezone().strftime("%H:%M:%S")
         said = " ".join((printable(record.event), *details(record)))
         lines = [f"{clock}  {printable(speaker(record.process)):12}  {said}".rstrip()]
-        if record.exception and self.problem:
+        if record.exception and self.trouble is not None:
             lines += record.exception.splitlines()
         elif record.exception:
             lines[0] += f" ('{self._command}' has the traceback)"

@@ -4,13 +4,14 @@ from dataclasses import dataclass, field
 
 from models.config.site import SupervisorConfig
 from models.errors import USER_ERROR_CODE
-from models.messages.health import Restarts
+from models.messages.health import Restarts, State
 from services.supervisor.child import Child, ChildSpec
 from services.supervisor.policy import GiveUp, History, Restart, decide
 from services.support.signals import signal_name
 
 SETTLES_WITHIN_S = 10.0
 """While a box starts, its parts wait for one another and rightly call themselves degraded; to a person that is no news yet."""
+_UNSETTLED: tuple[State, ...] = ("starting", "degraded")
 
 
 @dataclass
@@ -55,7 +56,7 @@ class Post:
         """The process told its state: whether that is news for a person."""
         if self.first_heard_s is None:
             self.first_heard_s = now_s
-        if state == self.reported or (state == "degraded" and now_s - self.first_heard_s < SETTLES_WITHIN_S):
+        if state == self.reported or (state in _UNSETTLED and now_s - self.first_heard_s < SETTLES_WITHIN_S):
             return False
         self.reported = state
         return True

@@ -14,7 +14,8 @@ from threading import Event
 from models.camera.rig import Rig
 from models.config.site import Site
 from models.errors import USER_ERROR_CODE, UserError
-from models.messages.health import GETTING_READY, SupervisorHealth
+from models.messages.health import SupervisorHealth
+from models.messages.trouble import Trouble
 from models.process import EDGE, RECORDER, REPLAY, ROUTER, Check, Playback
 from services.logs.files import STARTED, log_folder
 from services.supervisor import page, start_order
@@ -216,7 +217,7 @@ class Supervisor:
             # What an earlier process of that name said, or we on its behalf, is no sign of life.
             if post is None or post.child is None or post.child.pid != health.pid:
                 continue
-            if health.reason == GETTING_READY:
+            if health.state == "starting":
                 self._silence.get_ready(post.name, now_s)
             else:
                 self._runs(post, now_s)
@@ -239,12 +240,12 @@ class Supervisor:
                     self._silence.forget(name)
 
     def _speak(self, link: BusLink) -> None:
-        failed = {post.name: post.given_up for post in self._posts if post.given_up}
-        fault = "; ".join(f"{name} is given up: {reason}" for name, reason in failed.items())
-        troubles = (*(post.trouble for post in self._posts), self._machine.trouble, self._journal.problem)
+        failed = {post.name: Trouble("given_up", post.given_up) for post in self._posts if post.given_up}
+        restarting = (Trouble("restarting", post.trouble) for post in self._posts if post.trouble)
+        log = (self._journal.trouble,) if self._journal.trouble is not None else ()
         restarts = tuple(restarts for post in self._posts if (restarts := post.restarts) is not None)
-        own = SupervisorHealth(self._version, self._start_ns, restarts, self._journal.problem)
-        link.say(fault, "; ".join(filter(None, troubles)), failed, self._machine.newest, own)
+        own = SupervisorHealth(self._version, self._start_ns, restarts)
+        link.say((*restarting, *self._machine.troubles, *log), failed, self._machine.newest, own)
 
     def _look_at_machine(self, now_s: float) -> None:
         for trouble in self._machine.look(now_s):

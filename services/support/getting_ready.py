@@ -9,22 +9,26 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from models.messages.health import GETTING_READY
+from models.messages.trouble import Trouble
 from models.process import Bus
 from services.support.health import PERIOD_S, HealthReporter, ResourceMeter
 
 QUIET_S = 3.0
 """A usual start is over by then, and needs no words."""
 LONGEST_S = 600.0
+_COMPILES = "the first start after an update compiles for some minutes"
 
 
 @contextmanager
-def getting_ready(process: str, bus: Bus, quiet_s: float = QUIET_S, longest_s: float = LONGEST_S) -> Iterator[None]:
-    """While the body runs, say on the bus that the process is "degraded" because it gets ready.
+def getting_ready(
+    process: str, bus: Bus, doing: str = _COMPILES, quiet_s: float = QUIET_S, longest_s: float = LONGEST_S
+) -> Iterator[None]:
+    """While the body runs, say on the bus that the process is "starting".
 
     Args:
         process: its name on the bus.
         bus: where to say it.
+        doing: what takes so long, for people.
         quiet_s: nothing is said before.
         longest_s: nothing is said after that.
     """
@@ -35,7 +39,7 @@ def getting_ready(process: str, bus: Bus, quiet_s: float = QUIET_S, longest_s: f
         if ready.wait(quiet_s):
             return
         for _ in range(round(longest_s / PERIOD_S)):
-            reporter.report("degraded", GETTING_READY)
+            reporter.report("starting", (Trouble("getting_ready", f"getting ready: {doing}"),))
             if ready.wait(PERIOD_S):
                 return
 

@@ -4,14 +4,14 @@ import os
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Literal
 
 from models.messages import codec, topics
-from models.messages.health import FusionHealth, Health, MachineHealth, RecorderHealth, ReplayHealth, SupervisorHealth
+from models.messages.health import FusionHealth, Health, MachineHealth, RecorderHealth, ReplayHealth, State, SupervisorHealth
+from models.messages.trouble import Trouble
 from models.process import Bus, Resources
 
 PERIOD_S = 1.0
-_PAGE_MB = os.sysconf("SC_PAGE_SIZE") / 2**20
+_PAGE_MIB = os.sysconf("SC_PAGE_SIZE") / 2**20
 _STATM = Path("/proc/self/statm")
 
 
@@ -30,12 +30,12 @@ class ResourceMeter:
         wall_s, cpu_s = time.monotonic(), time.process_time()
         elapsed_s, used_s = wall_s - self._wall_s, cpu_s - self._cpu_s
         self._wall_s, self._cpu_s = wall_s, cpu_s
-        return Resources(used_s / elapsed_s if elapsed_s > 0 else 0.0, _resident_mb())
+        return Resources(used_s / elapsed_s if elapsed_s > 0 else 0.0, _resident_mib())
 
 
-def _resident_mb() -> float:
+def _resident_mib() -> float:
     try:
-        return int(_STATM.read_text().split()[1]) * _PAGE_MB
+        return int(_STATM.read_text().split()[1]) * _PAGE_MIB
     except OSError:  # A process that has no descriptor left goes on without this figure.
         return float("nan")
 
@@ -65,8 +65,8 @@ class HealthReporter:
 
     def report(
         self,
-        state: Literal["ok", "degraded", "failed"] = "ok",
-        reason: str = "",
+        state: State = "ok",
+        troubles: tuple[Trouble, ...] = (),
         *,
         fusion: FusionHealth | None = None,
         recorder: RecorderHealth | None = None,
@@ -83,9 +83,9 @@ class HealthReporter:
             pid=os.getpid(),
             t_ns=now_ns,
             state=state,
-            reason=reason,
+            troubles=troubles,
             cpu_cores=used.cpu_cores,
-            rss_mb=used.rss_mb,
+            rss_mib=used.rss_mib,
             fusion=fusion,
             recorder=recorder,
             machine=machine,

@@ -11,7 +11,7 @@ import psutil
 
 from models.messages.health import MachineHealth
 from services.support.cpu import CpuMeter
-from services.support.memory import free_memory_mb
+from services.support.memory import free_memory_mib
 
 WINDOW_NS = 60_000_000_000
 """A clock that was set and a processor that was slowed down are told for so long."""
@@ -52,7 +52,7 @@ def clocks_ns() -> tuple[int, int]:
     return wall_ns, monotonic_ns
 
 
-def free_disk_mb(folder: Path) -> float:
+def free_disk_mib(folder: Path) -> float:
     """Room for this user in the file system of `folder`, or of the nearest folder above that exists; NaN if it cannot be known."""
     for existing in (folder, *folder.absolute().parents):
         try:
@@ -93,8 +93,8 @@ class Sensors:
     """Everything that is read from outside."""
 
     clocks_ns: Callable[[], tuple[int, int]] = clocks_ns
-    free_disk_mb: Callable[[Path], float] = free_disk_mb
-    free_memory_mb: Callable[[], float] = free_memory_mb
+    free_disk_mib: Callable[[Path], float] = free_disk_mib
+    free_memory_mib: Callable[[], float] = free_memory_mib
     temperature_c: Callable[[], float | None] = temperature_c
     throttling: Callable[[], Throttling] = throttling
 
@@ -134,8 +134,8 @@ class MachineMeter:
         return MachineHealth(
             used_cores=self._cpu.used_cores(),
             granted_cores=self._cpu.granted_cores,
-            memory_free_mb=self._sensors.free_memory_mb(),
-            disk_free_mb=self._sensors.free_disk_mb(self._data),
+            memory_free_mib=self._sensors.free_memory_mib(),
+            disk_free_mib=self._sensors.free_disk_mib(self._data),
             temperature_c=self._sensors.temperature_c(),
             wall_minus_monotonic_ns=wall_ns - now_ns,
             clock_step_ms=self._clock_step_ms(wall_ns - now_ns, now_ns),

@@ -1,44 +1,26 @@
 """What is wrong with a machine, from what was measured of it. Pure."""
 
 import math
-from dataclasses import dataclass
-from typing import Literal
 
 from models.messages.health import MachineHealth
+from models.messages.trouble import MachineCode, Trouble
 
-MachineCode = Literal["disk_full", "disk_low", "memory_low", "hot", "throttled", "clock_set"]
-
-DISK_FULL_MB = 200.0
+DISK_FULL_MIB = 200.0
 """A lesson of 45 minutes takes up to 150 MB; below this the next one does not fit."""
-DISK_LOW_MB = 2000.0
+DISK_LOW_MIB = 2000.0
 """Room for a dozen lessons."""
-MEMORY_LOW_MB = 250.0
+MEMORY_LOW_MIB = 250.0
 """About what one process of the box needs to be started again."""
 HOT_C = 90.0
 """Processors for small boxes end or slow down at 85 to 105 °C; one that slows down earlier says so by itself."""
 
 
-@dataclass(frozen=True)
-class MachineTrouble:
-    """One thing that is wrong.
-
-    Attributes:
-        code: by which the page finds its words.
-        words: what is wrong, with the figure.
-        remedy: what to do.
-    """
-
-    code: MachineCode
-    words: str
-    remedy: str
-
-
-def machine_troubles(machine: MachineHealth) -> tuple[MachineTrouble, ...]:
+def machine_troubles(machine: MachineHealth) -> tuple[Trouble, ...]:
     """Everything wrong with a machine, worst first. A figure that is not known (NaN) is no trouble."""
-    found: list[tuple[bool, MachineTrouble]] = [
-        (machine.disk_free_mb < DISK_FULL_MB, _disk(machine, "disk_full", "is full")),
-        (DISK_FULL_MB <= machine.disk_free_mb < DISK_LOW_MB, _disk(machine, "disk_low", "is nearly full")),
-        (machine.memory_free_mb < MEMORY_LOW_MB, _memory(machine)),
+    found: list[tuple[bool, Trouble]] = [
+        (machine.disk_free_mib < DISK_FULL_MIB, _disk(machine, "disk_full", "is full")),
+        (DISK_FULL_MIB <= machine.disk_free_mib < DISK_LOW_MIB, _disk(machine, "disk_low", "is nearly full")),
+        (machine.memory_free_mib < MEMORY_LOW_MIB, _memory(machine)),
         (machine.temperature_c is not None and machine.temperature_c >= HOT_C, _heat(machine)),
         (machine.throttled, _throttled(machine)),
         (machine.clock_step_ms != 0, _clock(machine)),
@@ -46,36 +28,36 @@ def machine_troubles(machine: MachineHealth) -> tuple[MachineTrouble, ...]:
     return tuple(trouble for present, trouble in found if present)
 
 
-def _disk(machine: MachineHealth, code: MachineCode, how: str) -> MachineTrouble:
-    words = f"the disk of the data folder {how}: {size_of(machine.disk_free_mb)} are free"
-    return MachineTrouble(code, words, "delete old lessons or other files on it, or use a larger disk")
+def _disk(machine: MachineHealth, code: MachineCode, how: str) -> Trouble:
+    words = f"the disk of the data folder {how}: {size_of(machine.disk_free_mib)} are free"
+    return Trouble(code, words, "delete old lessons or other files on it, or use a larger disk")
 
 
-def _memory(machine: MachineHealth) -> MachineTrouble:
-    words = f"memory is nearly gone: {size_of(machine.memory_free_mb)} are free"
-    return MachineTrouble("memory_low", words, "end other programs on this machine, or give it more memory")
+def _memory(machine: MachineHealth) -> Trouble:
+    words = f"memory is nearly gone: {size_of(machine.memory_free_mib)} are free"
+    return Trouble("memory_low", words, "end other programs on this machine, or give it more memory")
 
 
-def _heat(machine: MachineHealth) -> MachineTrouble:
+def _heat(machine: MachineHealth) -> Trouble:
     words = f"the processor is too hot: {machine.temperature_c or 0.0:.0f} °C"
-    return MachineTrouble("hot", words, "free the box's openings, clean its fan, and keep it out of the sun")
+    return Trouble("hot", words, "free the box's openings, clean its fan, and keep it out of the sun")
 
 
-def _throttled(machine: MachineHealth) -> MachineTrouble:
+def _throttled(machine: MachineHealth) -> Trouble:
     at = "" if machine.temperature_c is None else f" (it is at {machine.temperature_c:.0f} °C)"
     words = f"the processor was slowed down in the last minute, for its heat or for want of power{at}"
-    return MachineTrouble("throttled", words, "cool the box, and use the power supply that belongs to it")
+    return Trouble("throttled", words, "cool the box, and use the power supply that belongs to it")
 
 
-def _clock(machine: MachineHealth) -> MachineTrouble:
+def _clock(machine: MachineHealth) -> Trouble:
     seconds = machine.clock_step_ms * 1e-3
     words = f"the clock was set {'forwards' if seconds > 0 else 'back'} by {abs(seconds):.1f} s in the last minute"
     remedy = "no figure is wrong by it, but the times in logs and of lessons jump; let a time service keep the clock"
-    return MachineTrouble("clock_set", words, remedy)
+    return Trouble("clock_set", words, remedy)
 
 
-def size_of(mb: float) -> str:
+def size_of(mib: float) -> str:
     """An amount of memory or disk for people."""
-    if math.isnan(mb):
+    if math.isnan(mib):
         return "an unknown amount"
-    return f"{mb / 1024:.1f} GB" if mb >= 1024 else f"{mb:.0f} MB"
+    return f"{mib / 1024:.1f} GB" if mib >= 1024 else f"{mib:.0f} MB"

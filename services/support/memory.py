@@ -7,17 +7,17 @@ import psutil
 from services.support.cgroup import own_cgroup, upwards
 
 
-def free_memory_mb(own: Path | None = None) -> float:
+def free_memory_mib(own: Path | None = None) -> float:
     """Memory that can be had without swapping, in MiB.
 
     Args:
         own: folder of this process's control group; found if it is left out.
     """
-    free_mb = psutil.virtual_memory().available / 2**20
-    return min([free_mb, *(_free_in_mb(group) for group in upwards(own or own_cgroup()))])
+    free_mib = psutil.virtual_memory().available / 2**20
+    return min([free_mib, *(_free_in_mib(group) for group in upwards(own or own_cgroup()))])
 
 
-def _free_in_mb(group: Path) -> float:
+def _free_in_mib(group: Path) -> float:
     """What a control group has left; its file cache can be given back and does not count as used."""
     try:
         limit = (group / "memory.max").read_text().strip()

@@ -72,6 +72,8 @@ def _judge(heard: HeardHealth | None, presence: Presence, now_ns: int) -> tuple[
         return "lost", "failed"
     if presence.alive is False:
         return "lost", "process_gone"
+    if heard is not None and heard.health.state == "starting" and now_ns - heard.arrived_ns <= SILENT_AFTER_NS:
+        return "starting", "starting"
     if heard is None or heard.health.camera is None:
         return ("starting", "starting") if now_ns - presence.since_ns < START_GRACE_NS else ("lost", "never_seen")
     if now_ns - heard.arrived_ns > SILENT_AFTER_NS:

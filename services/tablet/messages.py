@@ -8,10 +8,10 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from services.support.machine_troubles import MachineCode
+from models.messages.trouble import MachineCode
 
 CameraState = Literal["starting", "ok", "slow", "lost"]
-ProcessState = Literal["ok", "degraded", "failed", "silent", "gone"]
+ProcessState = Literal["starting", "ok", "degraded", "failed", "silent", "gone"]
 CameraReason = Literal[
     "none",
     "starting",  # not heard of yet, and the box has only just started
@@ -56,7 +56,7 @@ class ProcessStatus(_Model):
     reason: str
     age_s: float
     cpu_cores: float | None
-    rss_mb: float | None
+    rss_mib: float | None
     restarts: Annotated[int | None, Field(description="times that it had to be started again since the box was started")]
 
 
@@ -65,8 +65,8 @@ class MachineStatus(_Model):
 
     used_cores: float | None
     granted_cores: float | None
-    memory_free_mb: float | None
-    disk_free_mb: Annotated[float | None, Field(description="room where lessons and logs are kept")]
+    memory_free_mib: float | None
+    disk_free_mib: Annotated[float | None, Field(description="room where lessons and logs are kept")]
     temperature_c: float | None
     clock_ms: Annotated[int, Field(description="the box's date and time, milliseconds since 1970 in UTC")]
     clock_step_ms: Annotated[float | None, Field(description="how far that clock was set in the last minute")]

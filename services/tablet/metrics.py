@@ -14,12 +14,12 @@ from prometheus_client.exposition import CONTENT_TYPE_PLAIN_0_0_4
 from prometheus_client.registry import Collector
 
 from models.messages.health import Health
+from models.messages.trouble import MACHINE_CODES
 from models.process import RECORDER, ROUTER
-from services.support.machine_troubles import MachineCode
 from services.tablet.messages import CameraState, CameraStatus, MachineStatus, ProcessState, ProcessStatus, Status
 
 CONTENT_TYPE = CONTENT_TYPE_PLAIN_0_0_4
-_MB = 2.0**20
+_MIB = 2.0**20
 
 StatusT = TypeVar("StatusT")
 MemberT = TypeVar("MemberT", CameraStatus, ProcessStatus)
@@ -172,7 +172,7 @@ def _fusion(health: Health | None) -> Iterator[Metric]:
 _PROCESS_GAUGES: _Measures[ProcessStatus] = (
     ("health_age_seconds", "Time since the process last said how it is.", lambda process: process.age_s),
     ("cpu_cores", "CPU seconds a second that the process uses.", lambda process: process.cpu_cores),
-    ("resident_memory_bytes", "Memory that the process holds.", lambda process: _scaled(process.rss_mb, _MB)),
+    ("resident_memory_bytes", "Memory that the process holds.", lambda process: _scaled(process.rss_mib, _MIB)),
 )
 
 
@@ -183,8 +183,8 @@ _PROCESS_COUNTERS: _Measures[ProcessStatus] = (
 _MACHINE_GAUGES: _Measures[MachineStatus] = (
     ("used_cores", "CPU seconds a second in use on the granted cores, by whomever.", lambda machine: machine.used_cores),
     ("granted_cores", "CPU seconds a second that the box may use.", lambda machine: machine.granted_cores),
-    ("memory_free_bytes", "Memory that can be had without swapping.", lambda machine: _scaled(machine.memory_free_mb, _MB)),
-    ("disk_free_bytes", "Room where lessons and logs are kept.", lambda machine: _scaled(machine.disk_free_mb, _MB)),
+    ("memory_free_bytes", "Memory that can be had without swapping.", lambda machine: _scaled(machine.memory_free_mib, _MIB)),
+    ("disk_free_bytes", "Room where lessons and logs are kept.", lambda machine: _scaled(machine.disk_free_mib, _MIB)),
     ("temperature_celsius", "Temperature of the processor.", lambda machine: machine.temperature_c),
     ("clock_seconds", "The box's date and time, in seconds since 1970 in UTC.", lambda machine: machine.clock_ms * 1e-3),
     ("clock_step_seconds", "How far the clock was set in the last minute.", lambda m: _scaled(m.clock_step_ms, 1e-3)),
@@ -195,7 +195,7 @@ def _machine(machine: MachineStatus | None) -> Iterator[Metric]:
     for name, text, value_of in _MACHINE_GAUGES:
         yield _gauge(f"machine_{name}", text, value_of(machine) if machine else None)
     trouble = GaugeMetricFamily("kinebox_machine_trouble", "1 for everything that is wrong with the machine.", labels=["trouble"])
-    for code in get_args(MachineCode) if machine else ():
+    for code in MACHINE_CODES if machine else ():
         trouble.add_metric([code], float(machine is not None and code in machine.troubles))
     yield trouble
 
@@ -205,5 +205,5 @@ def _recorder(health: Health | None) -> Iterator[Metric]:
     running = recorder if recorder and recorder.lesson else None
     yield _gauge("recorder_recording", "1 while a lesson is recorded.", float(running is not None) if recorder else None)
     yield _gauge("recorder_safe_seconds", "Length of the lesson that is safe on disk.", running.recorded_s if running else None)
-    yield _gauge("recorder_file_bytes", "Size of the lesson's file.", running.size_mb * _MB if running else None)
+    yield _gauge("recorder_file_bytes", "Size of the lesson's file.", running.size_bytes if running else None)
     yield _gauge("recorder_gaps", "Interruptions since the lesson began.", running.gaps if running else None)

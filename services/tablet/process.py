@@ -15,6 +15,7 @@ from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.addressed import read_health
 from models.messages.motion import Motion
+from models.messages.trouble import messages_refused
 from models.process import Delivery, ProcessContext, Subscription
 from services.support import listening
 from services.support.health import PERIOD_S, HealthReporter
@@ -166,7 +167,7 @@ async def _publish_health(context: ProcessContext, server: TabletServer) -> None
     while True:
         rejected, counted = server.room.rejected_bus_messages - counted, server.room.rejected_bus_messages
         if rejected:
-            reporter.report("degraded", f"{rejected} messages on the bus could not be read in the last second")
+            reporter.report("degraded", (messages_refused(rejected),))
         else:
             reporter.report()
         await asyncio.sleep(PERIOD_S)

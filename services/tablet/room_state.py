@@ -8,6 +8,7 @@ from collections import deque
 
 from models.messages.health import Health, SupervisorHealth
 from models.messages.motion import JointState, Motion
+from models.messages.trouble import MACHINE_CODES
 from models.process import EDGE, RECORDER, REPLAY, ROUTER, Playback, process_name
 from services.support.machine_troubles import machine_troubles
 from services.tablet.camera_state import SILENT_AFTER_NS, HeardHealth, Presence, camera_status, known
@@ -182,7 +183,7 @@ class RoomState:
             reason=health.reason,
             age_s=age_ns * 1e-9,
             cpu_cores=known(health.cpu_cores),
-            rss_mb=known(health.rss_mb),
+            rss_mib=known(health.rss_mib),
             restarts=self._restarts(health.process),
         )
 
@@ -202,15 +203,16 @@ class RoomState:
         machine = health.machine if health else None
         if machine is None:
             return None
+        found = {trouble.code for trouble in machine_troubles(machine)}
         return MachineStatus(
             used_cores=known(machine.used_cores),
             granted_cores=known(machine.granted_cores),
-            memory_free_mb=known(machine.memory_free_mb),
-            disk_free_mb=known(machine.disk_free_mb),
+            memory_free_mib=known(machine.memory_free_mib),
+            disk_free_mib=known(machine.disk_free_mib),
             temperature_c=None if machine.temperature_c is None else known(machine.temperature_c),
             clock_ms=(machine.wall_minus_monotonic_ns + now_ns) // 1_000_000,
             clock_step_ms=known(machine.clock_step_ms),
-            troubles=[trouble.code for trouble in machine_troubles(machine)],
+            troubles=[code for code in MACHINE_CODES if code in found],
         )
 
     def healths(self, now_ns: int) -> list[Health]:

@@ -149,15 +149,15 @@ class Room:
     def _publish_health(self, scene: Scene, now_ns: int) -> None:
         for index, (camera, bus) in enumerate(self._edges.items()):
             rates = CameraHealth(camera, 30.0, scene.fresh_hz - 0.3 * index, 15.0, 12 + 7 * index, 21.0 + 3 * index, "thunder", {})
-            self._say(bus, Health(f"edge-{camera}", 100 + index, now_ns, "ok", "", 0.36, 214.0, camera=rates))
+            self._say(bus, Health(f"edge-{camera}", 100 + index, now_ns, "ok", (), 0.36, 214.0, camera=rates))
         supervisor = SupervisorHealth("0.1.0", now_ns, ())
-        said = Health("supervisor", 98, now_ns, "ok", "", 0.01, 30.0, machine=scene.machine, supervisor=supervisor)
+        said = Health("supervisor", 98, now_ns, "ok", (), 0.01, 30.0, machine=scene.machine, supervisor=supervisor)
         self._say(self._fusion, said)
         fusion = FusionHealth(29.8, 4.2, 0.83, 0, {}, "found" if scene.pupil == "found" else "searching")
         lesson = "" if scene.recorded_s is None else "2026-11-22-7b"
-        recorder = RecorderHealth(lesson, "7b, throwing", scene.recorded_s or 0.0, 2.5, 0)
-        self._say(self._fusion, Health("recorder", 98, now_ns, "ok", "", 0.01, 60.0, recorder=recorder))
-        self._say(self._fusion, Health("fusion", 99, now_ns, "ok", "", 0.21, 186.0, fusion=fusion))
+        recorder = RecorderHealth(lesson, "7b, throwing", scene.recorded_s or 0.0, 2_500_000, 0)
+        self._say(self._fusion, Health("recorder", 98, now_ns, "ok", (), 0.01, 60.0, recorder=recorder))
+        self._say(self._fusion, Health("fusion", 99, now_ns, "ok", (), 0.21, 186.0, fusion=fusion))
 
     def _say(self, bus: MemoryBus, health: Health) -> None:
         bus.publish(topics.health(health.process), codec.encode(health))

@@ -272,7 +272,7 @@ def test_a_browser_without_3d_says_so(page: Page, room: Room) -> None:
 
 
 def test_a_teacher_is_told_of_the_machine_only_when_it_matters_and_the_technician_always(page: Page, room: Room) -> None:
-    with_scene(room, speed=0.0, machine=msgspec.structs.replace(MACHINE, clock_step_ms=3000.0, disk_free_mb=1536.0))
+    with_scene(room, speed=0.0, machine=msgspec.structs.replace(MACHINE, clock_step_ms=3000.0, disk_free_mib=1536.0))
     open_live(page, room)
     page.get_by_role("button", name="Details").click()
     details = page.locator("#details")
@@ -280,7 +280,7 @@ def test_a_teacher_is_told_of_the_machine_only_when_it_matters_and_the_technicia
         expect(details.get_by_text(words, exact=True)).to_be_visible()
     message = page.locator(".messages")
     expect(message.get_by_text("disk")).to_have_count(0)
-    with_scene(room, machine=msgspec.structs.replace(MACHINE, disk_free_mb=20.0))
+    with_scene(room, machine=msgspec.structs.replace(MACHINE, disk_free_mib=20.0))
     expect(message.get_by_text("The disk is full")).to_be_visible()
     with_scene(room, machine=msgspec.structs.replace(MACHINE, temperature_c=97.0))
     expect(message.get_by_text("The box is too hot")).to_be_visible()

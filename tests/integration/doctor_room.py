@@ -15,6 +15,7 @@ from models.messages import codec, topics
 from models.messages.health import CameraHealth, Health, MachineHealth, SupervisorHealth
 from models.messages.motion import JointState, Motion
 from models.messages.observation import Crop, Observation, Person
+from models.messages.trouble import TroubleCode
 from models.process import Bus, ProcessContext, Resources
 from services.bus.zenoh_bus import open_client, open_router
 from services.doctor.box import BoxFacts, judge_box
@@ -53,16 +54,27 @@ class Room:
         """A process that is well."""
         name = process.removeprefix("edge-")
         camera = CameraHealth(name, 30.0, 15.0, 15.0, 0, 20.0, "thunder", {}) if process.startswith("edge-") else None
-        return Health(process, 1, time.monotonic_ns(), "ok", "", 0.1, 50.0, camera=camera)
+        return Health(process, 1, time.monotonic_ns(), "ok", (), 0.1, 50.0, camera=camera)
 
     def supervisor(self, machine: MachineHealth) -> Health:
         """A supervisor that is well and measured that machine."""
         told = SupervisorHealth(kinebox_version(), time.monotonic_ns(), ())
-        return Health("supervisor", 1, time.monotonic_ns(), "ok", "", 0.1, 50.0, machine=machine, supervisor=told)
+        return Health("supervisor", 1, time.monotonic_ns(), "ok", (), 0.1, 50.0, machine=machine, supervisor=told)
 
     def measured(self, sensors: Sensors) -> Callable[[], MachineHealth]:
         """The real measuring, with a few sensors of the test's."""
         return MachineMeter(self.folder, sensors)
+
+    def wait_until_said(self, process: str, code: TroubleCode) -> None:
+        """Until a process that runs has told of a trouble."""
+        heard = self.bus.subscribe(topics.health(process), keep=4)
+
+        def said() -> bool:
+            delivery = heard.receive(0.1)
+            return delivery is not None and code in {each.code for each in codec.decode(delivery.payload, Health).troubles}
+
+        until(said, f"{process} to say {code}")
+        heard.close()
 
     def judged(self) -> Examined:
         """What the doctor finds."""
@@ -76,7 +88,7 @@ class Room:
             stop.set()
             speaking.join()
         running = RunningBox(self.folder / "site.toml")
-        return judge_box(BoxFacts(self.site, "kinebox.log", running, expected, heard, kinebox_version(), time.monotonic_ns()))
+        return judge_box(BoxFacts(self.site, self.folder, running, expected, heard, kinebox_version(), time.monotonic_ns()))
 
     def _speak(self, stop: threading.Event) -> None:
         while not stop.wait(_SAY_S):

@@ -86,7 +86,7 @@ class Cameras:
             self._bus.publish(topics.observation(camera.name), codec.encode(observation))
             if sequence % 60 < len(RIG):
                 rates = CameraHealth(camera.name, 30.0, 15.0, 15.0, 0, 20.0, "thunder", {})
-                health = Health(f"edge-{camera.name}", 1, t_ns, "ok", "", 0.1, 1.0, camera=rates)
+                health = Health(f"edge-{camera.name}", 1, t_ns, "ok", (), 0.1, 1.0, camera=rates)
                 self._bus.publish(topics.health(health.process), codec.encode(health))
             sequence += 1
 

@@ -32,11 +32,11 @@ def test_a_link_that_breaks_while_the_supervisor_joins_does_not_leave_it_deaf(mo
         until(lambda: "fusion" in link.present, "who is present to be known")
 
         def speaks() -> bool:
-            link.say("", "", {}, None, OWN)
+            link.say((), {}, None, OWN)
             return said.receive(0.05) is not None
 
         until(speaks, "the supervisor to speak")
-        fusion = Health("fusion", 1, 1, "ok", "", 0.0, 0.0)
+        fusion = Health("fusion", 1, 1, "ok", (), 0.0, 0.0)
 
         def hears() -> bool:
             router.publish(topics.health("fusion"), codec.encode(fusion))

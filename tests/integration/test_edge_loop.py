@@ -104,6 +104,10 @@ class Box:
         self.control_bus.publish(topics.control("cam01"), codec.encode(control))
 
 
+def told(health: Health) -> set[str]:
+    return {trouble.code for trouble in health.troubles}
+
+
 def wait(subscription: Subscription) -> Delivery:
     delivery = subscription.receive(DEADLINE_S)
     assert delivery is not None, "nothing came"
@@ -220,8 +224,35 @@ def test_a_plan_for_another_network_is_followed_without_a_gap(tmp_path: Path) ->
 def test_a_message_that_is_no_plan_is_reported_and_does_no_harm(tmp_path: Path) -> None:
     with running(tmp_path) as box:
         box.control_bus.publish(topics.control("cam01"), b"\x01\x03nonsense")
-        box.health_until(lambda health, _: health.state == "degraded" and "plan" in health.reason)
-        box.health_until(lambda health, _: health.state == "ok", plan_hz=10.0)
+        box.health_until(lambda health, _: told(health) == {"plans_refused"})
+        box.health_until(lambda health, _: health.state == "ok")
+
+
+@pytest.mark.slow
+def test_a_plan_that_cannot_be_read_is_counted_in_health_although_a_good_one_follows_at_once(tmp_path: Path) -> None:
+    with running(tmp_path) as box:
+        for _ in range(20):
+            box.control_bus.publish(topics.control("cam01"), b"nonsense")
+            box.next_observation()  # The loop goes round, and takes it.
+            box.plan(10.0)
+            box.next_observation()
+        box.health_until(lambda health, _: told(health) == {"plans_refused"}, plan_hz=10.0)
+
+
+@pytest.mark.slow
+def test_a_plan_that_waited_too_long_is_void_and_nothing_is_wrong(tmp_path: Path) -> None:
+    with running(tmp_path) as box:
+        box.health_until(lambda _, camera: camera.target_hz == 5.0, plan_hz=5.0)
+        old = ViewControl("cam01", 9, time.monotonic_ns() - 100 * SECOND_NS, 25.0, 0, "thunder", True, None)
+        box.control_bus.publish(topics.control("cam01"), codec.encode(old))
+        seen: list[tuple[float, set[str]]] = []
+
+        def over(health: Health, camera: CameraHealth) -> bool:
+            seen.append((camera.target_hz, told(health)))
+            return camera.target_hz == 10.0  # the default, once fusion has fallen silent
+
+        box.health_until(over)
+    assert all(rate_hz != 25.0 and "plans_refused" not in codes for rate_hz, codes in seen)
 
 
 @pytest.mark.slow
@@ -234,7 +265,7 @@ def test_health_names_the_camera_and_the_process_is_alive_until_it_leaves(tmp_pa
     assert changes == [(topics.alive("edge-cam01"), True)]
     camera = health.camera
     assert camera is not None
-    assert (health.process, health.state, health.cpu_cores, health.rss_mb) == ("edge-cam01", "ok", 0.25, 64.0)
+    assert (health.process, health.state, health.cpu_cores, health.rss_mib) == ("edge-cam01", "ok", 0.25, 64.0)
     assert (camera.camera, camera.network, camera.target_hz) == ("cam01", "thunder", 10.0)
     assert camera.source_hz > 0
     assert {"decode", "crop", "pose", "encode"} <= set(camera.stage_ms)
@@ -255,9 +286,7 @@ def test_damaged_pictures_are_reported_and_the_others_are_used(tmp_path: Path) -
 
     with running(tmp_path, flawed) as box:
         box.plan(30.0)
-        box.health_until(
-            lambda health, _: health.state == "degraded" and "camera 'cam01': " in health.reason and "damaged" in health.reason
-        )
+        box.health_until(lambda health, _: health.state == "degraded" and told(health) == {"pictures_damaged"})
         assert box.next_observation().frame % 3 != 0
 
 

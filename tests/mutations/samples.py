@@ -11,6 +11,7 @@ from models.messages.health import CameraHealth, FusionHealth, Health, MachineHe
 from models.messages.lesson import Entry, FusionLog, LessonRequest, SegmentRequest
 from models.messages.motion import CameraUse, JointState, Motion
 from models.messages.observation import Crop, Observation, Person
+from models.messages.trouble import Trouble
 from models.skeleton import coco
 from tests.synthetic.gym import ring_rig
 from tests.synthetic.person import Person as Pupil
@@ -60,14 +61,23 @@ def healths(t_ns: int) -> dict[str, Health]:
     """A word of every process, by its name."""
     camera = CameraHealth(RIG.names[0], 30.0, 10.0, 10.0, 0, 5.0, "thunder", {"pose": 24.0, "decode": 4.0})
     machine = MachineHealth(1.2, 2.0, 4000.0, 9000.0, 55.0, 10**18, 0.0)
+    mending = Trouble("restarting", "tablet hung and is started again")
     restarts = (Restarts("tablet", 1, t_ns, "hung", ""),)
     return {
-        f"edge-{RIG.names[0]}": Health(f"edge-{RIG.names[0]}", 1, t_ns, "ok", "", 0.3, 200.0, camera=camera),
-        "fusion": Health("fusion", 2, t_ns, "ok", "", 0.2, 150.0, fusion=FusionHealth(30.0, 1.2, 0.8, 0, {}, "found")),
+        f"edge-{RIG.names[0]}": Health(f"edge-{RIG.names[0]}", 1, t_ns, "ok", (), 0.3, 200.0, camera=camera),
+        "fusion": Health("fusion", 2, t_ns, "ok", (), 0.2, 150.0, fusion=FusionHealth(30.0, 1.2, 0.8, 0, {}, "found")),
         "supervisor": Health(
-            "supervisor", 3, t_ns, "degraded", "x", 0.01, 30.0, machine=machine, supervisor=SupervisorHealth("0.1", t_ns, restarts)
+            "supervisor",
+            3,
+            t_ns,
+            "degraded",
+            (mending,),
+            0.01,
+            30.0,
+            machine=machine,
+            supervisor=SupervisorHealth("0.1", t_ns, restarts),
         ),
-        "recorder": Health("recorder", 4, t_ns, "ok", "", 0.01, 60.0, recorder=RecorderHealth("2026", "a", 3.0, 1.0, 0)),
+        "recorder": Health("recorder", 4, t_ns, "ok", (), 0.01, 60.0, recorder=RecorderHealth("2026", "a", 3.0, 1_000_000, 0)),
     }
 
 

@@ -18,12 +18,13 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
+from edge.meter import Meter
 from edge.process import Plan
 from edge.turns import default_control
 from models.messages import codec, topics
 from models.messages.lesson import LessonRequest
 from models.messages.motion import JointState, Motion
-from models.process import Delivery
+from models.process import Delivery, Resources
 from services.bus.mailbox import Mailbox
 from services.fusion.process import FusionLoop
 from services.lesson.process import RecorderLoop, lock
@@ -72,19 +73,22 @@ def test_fusion_survives_and_then_finds_the_pupil(topic: str, count: int, tmp_pa
 @pytest.mark.parametrize("topic", topics_of("edge.process"))
 def test_a_cameras_plan_survives_and_the_next_true_one_is_obeyed(topic: str, count: int) -> None:
     camera, growth, mailbox = RIG.names[0], Growth(), Mailbox(1)
-    plan = Plan(mailbox, default_control(camera, 0, 4, 0, 30.0))
-    problems = set[str]()
+    meter = Meter(f"edge-{camera}", 1, camera, t_report_ns=0, t_picture_ns=0)
+    plan = Plan(mailbox, default_control(camera, 0, 4, 0, 30.0), meter.refused_plan)
     for delivery in deliveries(topic, count, growth):
         mailbox.put(topic, delivery.payload)
         obeyed = plan.at(time.monotonic_ns())
         assert obeyed.camera == camera
         assert 0 <= obeyed.rate_hz <= 1000
-        problems.add(plan.problem.partition(":")[0])
-    assert "a plan of fusion's cannot be read" in problems
+    refused = meter.refused
+    assert refused > count // 10
+    told = meter.report(1, 10.0, "thunder", (), Resources(0.1, 100.0))
+    assert [trouble.code for trouble in told.troubles] == ["plans_refused"]
+    assert str(refused) in told.reason
     true = control(time.monotonic_ns())
     mailbox.put(topic, codec.encode(true))
     assert plan.at(time.monotonic_ns()) == true
-    assert plan.problem == ""
+    assert meter.refused == 0
     assert growth.mb < GROWTH_MB
 
 
@@ -201,6 +205,6 @@ def test_the_recorder_survives_and_then_records(topic: str, count: int, tmp_path
         RecorderLoop(context_of("recorder", bus, stop, tmp_path), tmp_path / "lessons").run()
     recorders = [health.recorder for health in bus.healths if health.recorder is not None]
     assert recorders[-1].title == "after all that"
-    assert any("could not be read" in health.reason for health in bus.healths)
+    assert any(trouble.code == "messages_refused" for health in bus.healths for trouble in health.troubles)
     assert bus.published[topics.segment_request()] > 0
     assert growth.mb < GROWTH_MB

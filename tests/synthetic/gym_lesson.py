@@ -9,6 +9,7 @@ from models.config.site import SITE_VERSION, CameraConfig, Site
 from models.messages import codec
 from models.messages.health import CameraHealth, FusionHealth, Health
 from models.messages.lesson import Entry
+from models.messages.trouble import Trouble
 from services.lesson import origin
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_header import LessonHeader
@@ -61,9 +62,9 @@ def write_gym_lesson(folder: Path, gym: Gym, header: LessonHeader | None = None,
 def _healths(gym: Gym, t_ns: int) -> Iterator[Health]:
     for name in gym.rig.names:
         rates = CameraHealth(name, 30.0, 14.0, 15.0, 0, 20.0, "thunder", {})
-        yield Health(f"edge-{name}", 4000, t_ns, "ok", "", 0.3, 200.0, camera=rates)
-    yield Health("fusion", 4001, t_ns, "ok", "", 0.2, 150.0, fusion=FusionHealth(30.0, 4.0, 0.5, 0, {}, "found"))
-    yield Health("tablet", 4002, t_ns, "failed", "of another day", 0.2, 150.0)
+        yield Health(f"edge-{name}", 4000, t_ns, "ok", (), 0.3, 200.0, camera=rates)
+    yield Health("fusion", 4001, t_ns, "ok", (), 0.2, 150.0, fusion=FusionHealth(30.0, 4.0, 0.5, 0, {}, "found"))
+    yield Health("tablet", 4002, t_ns, "failed", (Trouble("given_up", "of another day"),), 0.2, 150.0)
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ from models.messages.health import (
 from models.messages.lesson import Entry, FusionLog, LessonRequest, SegmentRequest
 from models.messages.motion import CameraUse, Motion
 from models.messages.observation import Crop, Observation, Person
+from models.messages.trouble import Trouble
 
 GOLDEN = Path(__file__).parents[1] / "golden/codec"
 
@@ -47,6 +48,7 @@ def examples() -> dict[str, codec.Message]:
         views=(np.arange(17) % 16).astype(np.uint32),
         cameras=(CameraUse("cam01", True, 33.5), CameraUse("cam02", False, 0.0)),
     )
+    troubles = Trouble("camera_dark", "slow", "look"), Trouble("plans_refused", "2 plans")
     return {
         "observation": Observation("cam01", 2, 41, 17, 10**15, 10**15 + 5, "thunder", (person,)),
         "observation_nobody": Observation("cam-2", 0, 0, 0, 1, 2, "lightning", ()),
@@ -54,30 +56,40 @@ def examples() -> dict[str, codec.Message]:
         "control": ViewControl("cam01", 5, 10**15, 10.0, 25_000_000, "thunder", False, CropPrediction(person.crop, 9, 1.5, -2.5)),
         "control_search": ViewControl("cam01", 6, 10**15, 5.0, 0, "lightning", True, None),
         "health": Health(
-            "edge-cam01", 4711, 10**15, "degraded", "slow", 0.25, 210.5,
+            "edge-cam01", 4711, 10**15, "degraded", troubles, 0.25, 210.5,
             camera=CameraHealth("cam01", 30.0, 9.9, 10.0, 4, 12.5, "thunder", {"decode": 4.5, "pose": 24.0}),
             fusion=FusionHealth(30.0, 1.25, 0.8, 3, {"cam02": 7}, "found"),
         ),
         "health_recorder": Health(
-            "recorder", 4712, 10**15, "ok", "", 0.01, 60.5,
-            recorder=RecorderHealth("2026-11-22-7b", "7b", 61.5, 2.25, 1),
+            "recorder", 4712, 10**15, "ok", (), 0.01, 60.5,
+            recorder=RecorderHealth("2026-11-22-7b", "7b", 61.5, 2_250_000, 1),
             machine=MachineHealth(1.5, 2.0, 900.0, 12_000.0, None, 10**18, -250.0),
         ),
         "health_replay": Health(
-            "replay", 4713, 10**15, "ok", "", 0.01, 60.5,
+            "replay", 4713, 10**15, "ok", (), 0.01, 60.5,
             replay=ReplayHealth(61.5, 2700.0, 0.5),
         ),
         "health_supervisor": Health(
-            "supervisor", 4714, 10**15, "failed", "edge-cam01 is given up", 0.01, 20.5,
+            "supervisor", 4714, 10**15, "failed", (Trouble("given_up", "edge-cam01 is given up"),), 0.01, 20.5,
             machine=MachineHealth(1.5, 2.0, 900.0, 12_000.0, 61.5, 10**18, 0.0, throttled=True),
             supervisor=SupervisorHealth(
-                "0.1.0", 10**14, (Restarts("edge-cam01", 5, 10**15, "hung", "ended 6 times"),), "nothing is kept; make room"
+                "0.1.0", 10**14, (Restarts("edge-cam01", 5, 10**15, "hung", "ended 6 times"),)
             ),
         ),
         "fusion_log": FusionLog(10**15, 3, (Entry("observation", 10**15 + 7, b"\x01\x01"), Entry("tick", 10**15 + 8, b""))),
         "segment_request": SegmentRequest(10**15),
         "lesson_request": LessonRequest("start", "7b, throwing"),
     }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("state", "troubles"), [("ok", [{"code": "hot", "words": "too hot"}]), ("degraded", []), ("failed", []), ("starting", [])]
+)
+def test_a_state_that_its_troubles_do_not_explain_is_refused(state: str, troubles: list[dict[str, str]]) -> None:
+    good = examples()["health_replay"]
+    fields = {name: getattr(good, name) for name in Health.__struct_fields__} | {"state": state, "troubles": troubles}
+    with pytest.raises(codec.CodecError, match=f"state '{state}' with"):
+        codec.decode(codec.encode(good)[:2] + codec._ENCODER.encode(fields), Health)
 
 
 def equal(a: codec.Message, b: codec.Message) -> bool:

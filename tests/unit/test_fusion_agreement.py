@@ -47,7 +47,8 @@ def test_two_cameras_that_are_exchanged_are_named_as_exchanged(a: int, b: int) -
     # In a ring, exchanging opposite cameras looks like exchanging the other two, turned by half a circle.
     assert (f"cam{a}", f"cam{b}") in found.exchanged
     assert len(found.exchanged) <= 2
-    assert f"cam{a} and cam{b}" in str(found)
+    assert f"cam{a} and cam{b}" in found.trouble.words
+    assert found.trouble.code == "cameras_exchanged"
 
 
 def test_a_camera_that_was_turned_is_named_alone() -> None:
@@ -61,7 +62,7 @@ def test_a_camera_that_was_turned_is_named_alone() -> None:
     assert found is not None
     assert found.strangers == ("cam2",)
     assert found.exchanged == ()
-    assert "cam2 does not agree with the calibration" in str(found)
+    assert (found.trouble.code, found.trouble.words) == ("camera_moved", "cam2 does not agree with the calibration")
 
 
 def test_two_cameras_can_only_be_told_to_contradict_one_another() -> None:
@@ -72,7 +73,8 @@ def test_two_cameras_can_only_be_told_to_contradict_one_another() -> None:
     assert found is not None
     assert found.contradictory
     assert found.exchanged == ()
-    assert "cam0, cam1 do not agree with one another" in str(found)
+    assert found.trouble.code == "cameras_disagree"
+    assert "cam0, cam1 do not agree with one another" in found.trouble.words
 
 
 def test_nobody_is_blamed_before_there_is_enough_to_tell() -> None:

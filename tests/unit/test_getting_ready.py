@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from models.messages import codec, topics
-from models.messages.health import GETTING_READY, Health
+from models.messages.health import Health
 from models.process import ProcessContext
 from services.bus import zenoh_bus
 from services.bus.memory import MemoryRouter
@@ -29,7 +29,8 @@ def test_who_takes_long_says_so_again_and_again_and_then_is_silent() -> None:
         assert first is not None
         assert second is not None, "once is not enough: who falls silent has hung"
         health = codec.decode(second.payload, Health)
-    assert (health.process, health.state, health.reason) == ("fusion", "degraded", GETTING_READY)
+    assert (health.process, health.state) == ("fusion", "starting")
+    assert [trouble.code for trouble in health.troubles] == ["getting_ready"]
     while heard.receive(0.0) is not None:
         pass
     assert heard.receive(1.5) is None
@@ -72,7 +73,7 @@ def test_the_router_can_be_heard_while_its_kernels_are_compiled(monkeypatch: pyt
     def compile_for_long(_entry: object) -> object:
         delivery = heard.receive(DEADLINE_S)
         assert delivery is not None, "nothing was heard of a process that compiles"
-        words.append(codec.decode(delivery.payload, Health).reason)
+        words.append(codec.decode(delivery.payload, Health).state)
         return run
 
     def run(context: ProcessContext) -> None:
@@ -83,4 +84,4 @@ def test_the_router_can_be_heard_while_its_kernels_are_compiled(monkeypatch: pyt
     monkeypatch.setattr(zenoh_bus, "open_router", lambda _endpoint: router.open())
     order = ProcessOrder("fusion", ROOT / "deploy/sites/footage/site.toml", Path("build"), start_ns=time.monotonic_ns())
     run_process(order)
-    assert words == [GETTING_READY, "fusion runs"]
+    assert words == ["starting", "fusion runs"]

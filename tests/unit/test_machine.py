@@ -12,9 +12,9 @@ import pytest
 
 from models.messages.health import MachineHealth
 from services.supervisor.machine_watch import MachineWatch
-from services.support.machine import MachineMeter, Sensors, Throttling, clocks_ns, free_disk_mb, throttling
+from services.support.machine import MachineMeter, Sensors, Throttling, clocks_ns, free_disk_mib, throttling
 from services.support.machine_troubles import machine_troubles
-from services.support.memory import free_memory_mb
+from services.support.memory import free_memory_mib
 
 S = 1_000_000_000
 WALL_NS = 1_700_000_000 * S
@@ -105,7 +105,7 @@ def test_intels_counts_and_the_raspberrys_bits_are_read(tmp_path: Path) -> None:
 
 def test_the_disk_is_that_of_the_folder_even_before_it_is_made(tmp_path: Path) -> None:
     real = os.statvfs(tmp_path)
-    assert free_disk_mb(tmp_path / "not" / "there") == pytest.approx(real.f_bavail * real.f_frsize / 2**20, rel=0.05)
+    assert free_disk_mib(tmp_path / "not" / "there") == pytest.approx(real.f_bavail * real.f_frsize / 2**20, rel=0.05)
 
 
 def test_memory_that_a_control_group_forbids_is_not_free(tmp_path: Path) -> None:
@@ -115,15 +115,15 @@ def test_memory_that_a_control_group_forbids_is_not_free(tmp_path: Path) -> None
     (group.parent / "memory.max").write_text(f"{300 * 2**20}\n")
     (group.parent / "memory.current").write_text(f"{250 * 2**20}\n")
     (group.parent / "memory.stat").write_text(f"anon 1\ninactive_file {20 * 2**20}\n")
-    assert free_memory_mb(group) == pytest.approx(70.0)
+    assert free_memory_mib(group) == pytest.approx(70.0)
 
 
 @pytest.mark.parametrize(
     ("changes", "code", "words"),
     [
-        ({"disk_free_mb": 150.0}, "disk_full", "the disk of the data folder is full: 150 MB are free"),
-        ({"disk_free_mb": 1536.0}, "disk_low", "the disk of the data folder is nearly full: 1.5 GB are free"),
-        ({"memory_free_mb": 90.0}, "memory_low", "memory is nearly gone: 90 MB are free"),
+        ({"disk_free_mib": 150.0}, "disk_full", "the disk of the data folder is full: 150 MB are free"),
+        ({"disk_free_mib": 1536.0}, "disk_low", "the disk of the data folder is nearly full: 1.5 GB are free"),
+        ({"memory_free_mib": 90.0}, "memory_low", "memory is nearly gone: 90 MB are free"),
         ({"temperature_c": 96.2}, "hot", "the processor is too hot: 96 °C"),
         ({"throttled": True}, "throttled", "the processor was slowed down in the last minute, .* \\(it is at 55 °C\\)"),
         ({"clock_step_ms": -1500.0}, "clock_set", "the clock was set back by 1.5 s in the last minute"),
@@ -137,7 +137,7 @@ def test_each_trouble_is_named_with_its_figure(changes: dict[str, float], code: 
 
 
 def test_what_is_not_known_is_no_trouble() -> None:
-    unknown = msgspec.structs.replace(GOOD, disk_free_mb=float("nan"), memory_free_mb=float("nan"), temperature_c=None)
+    unknown = msgspec.structs.replace(GOOD, disk_free_mib=float("nan"), memory_free_mib=float("nan"), temperature_c=None)
     assert machine_troubles(unknown) == ()
 
 
@@ -145,18 +145,18 @@ def test_a_person_is_told_once_and_again_only_after_a_trouble_was_away() -> None
     machine = GOOD
     watch = MachineWatch(lambda: machine)
     assert watch.look(0.0) == []
-    machine = msgspec.structs.replace(GOOD, memory_free_mb=10.0)
+    machine = msgspec.structs.replace(GOOD, memory_free_mib=10.0)
     assert [trouble.code for trouble in watch.look(1.0)] == ["memory_low"]
-    assert watch.trouble == "memory is nearly gone: 10 MB are free"
+    assert [trouble.words for trouble in watch.troubles] == ["memory is nearly gone: 10 MB are free"]
     assert watch.look(2.0) == []
     machine = GOOD
     assert watch.look(3.0) == []
-    assert watch.trouble == ""
-    machine = msgspec.structs.replace(GOOD, memory_free_mb=10.0)
+    assert watch.troubles == ()
+    machine = msgspec.structs.replace(GOOD, memory_free_mib=10.0)
     assert watch.look(4.0) == [], "it flickers"
     machine = GOOD
     watch.look(5.0)
-    machine = msgspec.structs.replace(GOOD, memory_free_mb=10.0)
+    machine = msgspec.structs.replace(GOOD, memory_free_mib=10.0)
     assert len(watch.look(70.0)) == 1
 
 
@@ -171,11 +171,13 @@ def test_a_machine_that_cannot_be_measured_is_a_trouble_and_no_end() -> None:
 
     watch = MachineWatch(measure)
     watch.look(0.0)
-    assert watch.look(1.0) == []
+    assert [trouble.code for trouble in watch.look(1.0)] == ["machine_unmeasured"]
     assert watch.newest is None, "an old measurement would be taken for a new one"
-    assert watch.trouble == "the machine cannot be measured (Too many open files)"
+    assert [(trouble.code, trouble.words) for trouble in watch.troubles] == [
+        ("machine_unmeasured", "the machine cannot be measured (Too many open files)")
+    ]
     assert watch.look(2.0) == []
-    assert watch.trouble == ""
+    assert watch.troubles == ()
 
 
 def test_the_machine_is_measured_once_a_second_and_not_with_every_look() -> None:

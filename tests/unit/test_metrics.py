@@ -17,6 +17,7 @@ from models.messages.health import (
     Restarts,
     SupervisorHealth,
 )
+from models.messages.trouble import Trouble
 from services.tablet import metrics, metrics_docs
 from services.tablet.messages import Status
 from services.tablet.room_state import RoomState
@@ -41,7 +42,8 @@ class Room:
         return self.state.healths(self.now_ns)
 
     def hear(self, process: str, state: str = "ok", **parts: object) -> None:
-        said = Health(process, 1, T0, state, "", 0.25, 200.0)  # type: ignore[arg-type]
+        troubles = () if state == "ok" else (Trouble("restarting", "edge-a is started again"),)
+        said = Health(process, 1, T0, state, troubles, 0.25, 200.0)  # type: ignore[arg-type]
         self.state.receive_health(msgspec.structs.replace(said, **parts), self.now_ns)
 
 
@@ -49,7 +51,7 @@ def full_room() -> Room:
     room = Room()
     room.hear("edge-a", camera=CameraHealth("a", 30.0, 14.5, 15.0, 7, 20.0, "thunder", {"decode": 4.0, "pose": 24.0}))
     room.hear("fusion", fusion=FusionHealth(29.5, 2.5, 0.5, 4, {"b": 9}, "found"))
-    room.hear("recorder", recorder=RecorderHealth("2026-11-22-7b", "7b", 61.5, 2.0, 1))
+    room.hear("recorder", recorder=RecorderHealth("2026-11-22-7b", "7b", 61.5, 2_250_000, 1))
     restarts = (Restarts("edge-a", 2, T0, "hung", ""),)
     room.hear("supervisor", "degraded", machine=MACHINE, supervisor=SupervisorHealth("0.1.0", T0, restarts))
     room.state.rejected_bus_messages = 5
@@ -90,6 +92,7 @@ def test_what_the_processes_said_is_what_prometheus_reads_in_base_units() -> Non
         ("kinebox_machine_temperature_celsius",): 61.5,
         ("kinebox_machine_clock_seconds",): 1_700_000_000,
         ("kinebox_recorder_safe_seconds",): 61.5,
+        ("kinebox_recorder_file_bytes",): 2_250_000,
         ("kinebox_rejected_messages_total", "bus"): 5,
         ("kinebox_clients",): 3,
         ("kinebox_pupil_found",): 1,
@@ -115,16 +118,16 @@ def test_a_camera_that_is_lost_has_no_rate_rather_than_its_last_one() -> None:
 def test_figures_that_are_none_have_no_sample() -> None:
     room = full_room()
     nan = math.nan
-    room.hear("edge-a", cpu_cores=nan, rss_mb=nan, camera=CameraHealth("a", nan, nan, nan, 0, nan, "thunder", {"pose": nan}))
+    room.hear("edge-a", cpu_cores=nan, rss_mib=nan, camera=CameraHealth("a", nan, nan, nan, 0, nan, "thunder", {"pose": nan}))
     room.hear("fusion", fusion=FusionHealth(nan, nan, nan, 0, {}, "found"))
-    room.hear("supervisor", machine=msgspec.structs.replace(MACHINE, disk_free_mb=nan, temperature_c=None))
+    room.hear("supervisor", machine=msgspec.structs.replace(MACHINE, disk_free_mib=nan, temperature_c=None))
     assert not [key for key, value in samples(room).items() if not math.isfinite(value)]
 
 
 def test_what_another_process_says_in_the_name_of_fusion_or_the_recorder_is_not_measured() -> None:
     room = full_room()
     own = samples(room)
-    room.hear("edge-a", fusion=FusionHealth(1.0, 1.0, 1.0, 1, {}, "found"), recorder=RecorderHealth("", "", 1.0, 1.0, 9))
+    room.hear("edge-a", fusion=FusionHealth(1.0, 1.0, 1.0, 1, {}, "found"), recorder=RecorderHealth("", "", 1.0, 1, 9))
     read = samples(room)
     assert {key: value for key, value in read.items() if key[0].startswith(("kinebox_fusion", "kinebox_recorder"))} == {
         key: value for key, value in own.items() if key[0].startswith(("kinebox_fusion", "kinebox_recorder"))
@@ -133,7 +136,7 @@ def test_what_another_process_says_in_the_name_of_fusion_or_the_recorder_is_not_
 
 def test_machine_troubles_are_named() -> None:
     room = full_room()
-    room.hear("supervisor", machine=msgspec.structs.replace(MACHINE, disk_free_mb=50.0))
+    room.hear("supervisor", machine=msgspec.structs.replace(MACHINE, disk_free_mib=50.0))
     read = samples(room)
     assert read["kinebox_machine_trouble", "disk_full"] == 1
     assert read["kinebox_machine_trouble", "hot"] == 0

@@ -17,6 +17,7 @@ import structlog
 from models.config.site import TabletConfig
 from models.messages import codec, topics
 from models.messages.health import Health
+from models.messages.trouble import Trouble
 from models.process import Resources
 from services.bus.memory import MemoryRouter
 from services.supervisor.child import ChildSpec, name_of
@@ -43,7 +44,7 @@ def test_health_is_published_on_the_process_own_topic_and_due_once_a_second() ->
     subscription = bus.subscribe(topics.ALL_HEALTH, keep=2)
     reporter = HealthReporter("edge-a", bus, lambda: Resources(0.5, 100.0), lambda: now_ns)
     assert reporter.due()
-    said = reporter.report("degraded", "slow")
+    said = reporter.report("degraded", (Trouble("camera_faulty", "slow"),))
     delivery = subscription.receive(0.0)
     assert delivery is not None
     assert delivery.topic == topics.health("edge-a")
@@ -62,7 +63,7 @@ def test_a_process_measures_its_own_cpu_and_memory() -> None:
         pass
     used = meter()
     assert used.cpu_cores * (time.monotonic() - wall_s) >= 0.05
-    assert used.rss_mb > 10
+    assert used.rss_mib > 10
 
 
 def test_our_logs_and_the_libraries_come_out_alike(stream: io.StringIO) -> None:

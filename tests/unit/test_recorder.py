@@ -8,6 +8,7 @@ import pytest
 
 from models.config.site import LessonsConfig
 from models.messages.lesson import Entry, FusionLog, SegmentRequest
+from models.messages.trouble import one_line
 from services.lesson import recorder as module
 from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX, SUFFIX
@@ -27,7 +28,7 @@ class Room:
         self.now_ns = BEGIN_NS
         self.free_mb = 10_000.0
         self.folder = folder
-        monkeypatch.setattr(module, "free_disk_mb", lambda _folder: self.free_mb)
+        monkeypatch.setattr(module, "free_disk_mib", lambda _folder: self.free_mb * 1e6 / 2**20)
         self.recorder = self.started(automatic=automatic)
 
     def started(self, unfinished: LessonWriter | None = None, *, automatic: bool = False) -> Recorder:
@@ -43,6 +44,12 @@ class Room:
 
     def files(self, suffix: str) -> list[str]:
         return sorted(path.name for path in self.folder.iterdir() if path.name.endswith(suffix))
+
+    @property
+    def trouble(self) -> str:
+        """The recorder's trouble as people read it."""
+        trouble = self.recorder.trouble
+        return "" if trouble is None else one_line((trouble,))
 
     def _header(self, title: str) -> LessonHeader:
         return header(title)
@@ -75,7 +82,8 @@ def test_a_lesson_is_recorded_from_start_to_stop(room: Room) -> None:
     health = room.recorder.health()
     assert (health.title, health.gaps) == ("7b, throwing", 0)
     assert health.recorded_s == pytest.approx(2.0, abs=0.1)
-    assert health.size_mb > 0
+    (written,) = room.folder.iterdir()
+    assert health.size_bytes == written.stat().st_size > 0
     room.recorder.stop()
     assert room.recorder.look_after() is None
     (name,) = room.files(SUFFIX)
@@ -134,9 +142,9 @@ def test_a_part_from_the_future_is_a_gap_and_does_not_date_what_comes_after_it(r
 def test_when_fusion_is_not_heard_the_recorder_says_that_it_stands_still(room: Room) -> None:
     room.recorder.start("one")
     room.record(parts=1)
-    assert room.recorder.trouble == ""
+    assert room.trouble == ""
     room.now_ns += SILENT_NS + 1
-    assert "stands still: nothing is heard of fusion" in room.recorder.trouble
+    assert "stands still: nothing is heard of fusion" in room.trouble
     room.record(parts=1)
 
 
@@ -145,15 +153,15 @@ def test_a_disk_that_fills_up_ends_the_lesson_cleanly_and_says_so(room: Room) ->
     room.record(parts=3)
     room.free_mb = 499.0
     assert room.recorder.look_after() is None
-    assert "499 MB are left on the disk, lessons.least_free_mb is 500" in room.recorder.trouble
+    assert "499 MB are left on the disk, lessons.least_free_mb is 500" in room.trouble
     (name,) = room.files(SUFFIX)
     with open_lesson(room.folder / name) as lesson:
         assert lesson.summary().parts == 3
     room.recorder.start("two")
-    assert "no lesson was begun" in room.recorder.trouble
+    assert "no lesson was begun" in room.trouble
     room.free_mb = 501.0
     room.recorder.start("three")
-    assert room.recorder.trouble == ""
+    assert room.trouble == ""
     assert room.recorder.health().title == "three"
 
 
@@ -168,7 +176,7 @@ def test_a_write_error_ends_the_lesson_and_what_was_safe_stays_readable(room: Ro
     with monkeypatch.context() as broken:
         broken.setattr("services.lesson.lesson_file.os.fsync", fail)
         room.recorder.take(part(BEGIN_NS + 1, 3))
-    assert "Input/output error" in room.recorder.trouble
+    assert "Input/output error" in room.trouble
     assert room.recorder.health().lesson == ""
     assert room.files(PART_SUFFIX)
     assert recover(room.folder, run_ns=0) is None
@@ -183,7 +191,7 @@ def test_trouble_with_the_list_of_lessons_is_no_trouble_of_a_lesson_that_is_fini
     room.recorder.start("one")
     room.record(parts=3)
     room.recorder.stop()
-    assert room.recorder.trouble == ""
+    assert room.trouble == ""
     (name,) = room.files(SUFFIX)
     with open_lesson(room.folder / name) as lesson:
         assert lesson.summary().parts == 3
@@ -195,7 +203,7 @@ def test_a_folder_that_cannot_be_written_to_is_named(room: Room, monkeypatch: py
 
     monkeypatch.setattr(LessonWriter, "create", refuse)
     room.recorder.start("one")
-    assert "no lesson was begun: Read-only file system" in room.recorder.trouble
+    assert "no lesson was begun: Read-only file system" in room.trouble
     assert room.recorder.health().lesson == ""
 
 
@@ -234,7 +242,7 @@ def test_an_automatic_recorder_waits_until_there_is_room_again(automatic_room: R
     assert room.recorder.look_after() is None
     room.now_ns += RETRY_NS
     assert room.recorder.look_after() is not None
-    assert room.recorder.trouble == ""
+    assert room.trouble == ""
 
 
 @pytest.mark.parametrize(

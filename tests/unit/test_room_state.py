@@ -6,6 +6,7 @@ import pytest
 
 from models.messages.health import CameraHealth, FusionHealth, Health, RecorderHealth, ReplayHealth
 from models.messages.motion import CameraUse, JointState, Motion
+from models.messages.trouble import Trouble
 from models.process import Playback
 from models.skeleton import coco
 from services.tablet.messages import CameraStatus
@@ -44,7 +45,8 @@ def health(
     reason: str = "",
 ) -> Health:
     camera = CameraHealth("a", source_hz, fresh_hz, target_hz, 3, backlog_ms, "thunder", {})
-    return Health("edge-a", 1, T0, state, reason, 0.3, 200.0, camera=camera)  # type: ignore[arg-type]
+    troubles = (Trouble("camera_faulty", reason),) if reason else ()
+    return Health("edge-a", 1, T0, state, troubles, 0.3, 200.0, camera=camera)  # type: ignore[arg-type]
 
 
 def camera(state: RoomState, now_ns: int) -> CameraStatus:
@@ -85,6 +87,16 @@ def test_a_camera_is_judged_by_what_it_says(said: Health, expected: tuple[str, s
     assert camera(state, T0 + S).detail == said.reason
 
 
+def test_a_process_that_gets_ready_is_starting_for_as_long_as_it_says_so() -> None:
+    state = room()
+    getting_ready = Health("edge-a", 1, T0, "starting", (Trouble("getting_ready", "it compiles"),), 0.9, 100.0)
+    state.receive_health(getting_ready, T0 + 60 * S)
+    assert judged(state, T0 + 61 * S) == ("starting", "starting")
+    (process,) = state.status(T0 + 61 * S, 0).processes
+    assert (process.state, process.reason) == ("starting", "it compiles")
+    assert judged(state, T0 + 64 * S) == ("lost", "never_seen")
+
+
 def test_a_camera_that_falls_silent_is_lost_and_shows_no_rates() -> None:
     state = room()
     state.receive_health(health(), T0 + S)
@@ -107,7 +119,9 @@ def test_a_camera_whose_process_ends_is_lost_at_once_and_starts_anew() -> None:
 
 def test_a_camera_that_the_supervisor_gave_up_says_why_instead_of_starting_for_ever() -> None:
     state = room()
-    state.receive_health(Health("edge-a", 3, T0, "failed", "camera 'a': a.avi is missing", 0.0, 0.0), T0 + S)
+    state.receive_health(
+        Health("edge-a", 3, T0, "failed", (Trouble("given_up", "camera 'a': a.avi is missing"),), 0.0, 0.0), T0 + S
+    )
     assert judged(state, T0 + S) == ("lost", "failed")
     assert camera(state, T0 + S).detail == "camera 'a': a.avi is missing"
     state.set_alive("edge-a", False, T0 + S)
@@ -147,14 +161,14 @@ def test_a_figure_that_is_foretold_is_as_old_as_what_it_rests_on() -> None:
 def test_figures_that_are_none_are_not_known_and_the_state_goes_on(nonsense: float) -> None:
     state = room()
     rates = CameraHealth("a", nonsense, nonsense, nonsense, 3, nonsense, "thunder", {})
-    state.receive_health(Health("edge-a", 1, T0, "ok", "", nonsense, nonsense, camera=rates), T0)
+    state.receive_health(Health("edge-a", 1, T0, "ok", (), nonsense, nonsense, camera=rates), T0)
     fusion = FusionHealth(nonsense, nonsense, nonsense, 0, {}, "found")
-    state.receive_health(Health("fusion", 2, T0, "ok", "", nonsense, nonsense, fusion=fusion), T0)
+    state.receive_health(Health("fusion", 2, T0, "ok", (), nonsense, nonsense, fusion=fusion), T0)
     status = state.status(T0, 0)
     assert judged(state, T0) == ("slow", "degraded")
     seen = status.cameras[0]
     assert (seen.source_hz, seen.fresh_hz, seen.target_hz, seen.backlog_ms) == (None, None, None, None)
-    assert [(process.cpu_cores, process.rss_mb) for process in status.processes] == [(None, None)] * 2
+    assert [(process.cpu_cores, process.rss_mib) for process in status.processes] == [(None, None)] * 2
     assert status.cpu_load is None
 
 
@@ -179,7 +193,7 @@ def test_a_camera_counts_as_used_only_while_something_is_seen() -> None:
 def test_fusion_that_is_silent_or_gone_knows_nothing_of_the_pupil() -> None:
     state = room()
     fusion = FusionHealth(30.0, 4.0, 0.8, 0, {}, "found")
-    state.receive_health(Health("fusion", 2, T0, "ok", "", 0.2, 100.0, fusion=fusion), T0)
+    state.receive_health(Health("fusion", 2, T0, "ok", (), 0.2, 100.0, fusion=fusion), T0)
     assert state.status(T0, 0).pupil == "found"
     assert state.status(T0 + 10 * S, 0).pupil == "unknown"
     state.set_alive("fusion", False, T0)
@@ -188,7 +202,9 @@ def test_fusion_that_is_silent_or_gone_knows_nothing_of_the_pupil() -> None:
 
 def test_failures_that_the_supervisor_reports_are_passed_on() -> None:
     state = room()
-    state.receive_health(Health("supervisor", 3, T0, "failed", "edge-a was given up after 5 restarts", 0.0, 20.0), T0)
+    state.receive_health(
+        Health("supervisor", 3, T0, "failed", (Trouble("given_up", "edge-a was given up after 5 restarts"),), 0.0, 20.0), T0
+    )
     (process,) = state.status(T0, 0).processes
     assert (process.name, process.state, process.reason) == ("supervisor", "failed", "edge-a was given up after 5 restarts")
 
@@ -199,7 +215,7 @@ def test_a_process_that_was_given_up_is_failed_and_not_only_gone() -> None:
     state.receive_health(health(), T0)
     state.set_alive("edge-a", False, T0 + 1)
     assert state.status(T0 + 2, 0).processes[0].state == "gone"
-    state.receive_health(Health("edge-a", 9, T0, "failed", "ended 6 times", 0.0, 0.0), T0 + 3)
+    state.receive_health(Health("edge-a", 9, T0, "failed", (Trouble("given_up", "ended 6 times"),), 0.0, 0.0), T0 + 3)
     assert state.status(T0 + 4, 0).processes[0].state == "failed"
 
 
@@ -210,8 +226,8 @@ def test_a_new_epoch_is_passed_on() -> None:
 
 
 def recorder(lesson: str, recorded_s: float = 61.0) -> Health:
-    said = RecorderHealth(lesson, "7b", recorded_s, 2.0, 0)
-    return Health("recorder", 5, T0, "ok", "", 0.0, 50.0, recorder=said)
+    said = RecorderHealth(lesson, "7b", recorded_s, 2_000_000, 0)
+    return Health("recorder", 5, T0, "ok", (), 0.0, 50.0, recorder=said)
 
 
 def test_recording_is_shown_while_the_recorder_says_so_and_no_longer() -> None:
@@ -235,7 +251,7 @@ def test_what_is_played_never_looks_live_even_before_the_replay_is_heard() -> No
     shown = state.status(T0, 0).replay
     assert shown is not None
     assert (shown.title, shown.began_ms, shown.position_s) == ("7b", 1_764_000_000_000, None)
-    state.receive_health(Health("replay", 5, T0, "ok", "", 0.0, 50.0, replay=ReplayHealth(3.0, 60.0, 0.5)), T0)
+    state.receive_health(Health("replay", 5, T0, "ok", (), 0.0, 50.0, replay=ReplayHealth(3.0, 60.0, 0.5)), T0)
     shown = state.status(T0, 0).replay
     assert shown is not None
     assert (shown.position_s, shown.length_s) == (3.0, 60.0)

@@ -7,8 +7,8 @@ from services.bus.memory import MemoryRouter
 from services.doctor.listen import Heard
 from services.lesson.remote import Remote
 
-FALSE = Health("recorder", 1, 5, "ok", "", 0.1, 50.0, recorder=RecorderHealth("false", "", 1.0, 1.0, 0))
-TRUE = Health("recorder", 2, 6, "ok", "", 0.1, 50.0, recorder=RecorderHealth("true", "", 1.0, 1.0, 0))
+FALSE = Health("recorder", 1, 5, "ok", (), 0.1, 50.0, recorder=RecorderHealth("false", "", 1.0, 1, 0))
+TRUE = Health("recorder", 2, 6, "ok", (), 0.1, 50.0, recorder=RecorderHealth("true", "", 1.0, 1, 0))
 
 
 def test_who_asks_for_a_lesson_hears_the_recorder_and_nobody_in_its_name() -> None:

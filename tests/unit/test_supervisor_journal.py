@@ -201,11 +201,13 @@ def test_a_quiet_log_notices_that_it_can_be_kept_again(tmp_path: Path, monkeypat
     monkeypatch.setattr(time, "monotonic", lambda: now_s)
     (tmp_path / "logs").write_text("a file where the folder should be")
     journal = Journal(tmp_path / "logs", io.StringIO())
-    assert journal.problem.startswith(f"nothing is kept in {journal.path}: File exists; ")
+    assert journal.trouble is not None
+    assert (journal.trouble.code, journal.trouble.words) == ("log_not_kept", f"nothing is kept in {journal.path}: File exists")
+    assert journal.trouble.remedy.startswith("make room")
     (tmp_path / "logs").unlink()
     now_s += 1.0
     journal.settle()
-    assert journal.problem == ""
+    assert journal.trouble is None
     journal.close()
 
 

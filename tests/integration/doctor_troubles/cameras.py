@@ -22,12 +22,14 @@ def _slow_for_a_while(box: Box) -> None:
 @contextmanager
 def camera_moved(folder: Path) -> Iterator[Examined]:
     with doctor_room.filmed(folder, calibration=doctor_room.turned("cam1", 4.0)) as room:
+        room.wait_until_said("fusion", "camera_moved")
         yield room.judged()
 
 
 @contextmanager
 def camera_of_another_loop(folder: Path) -> Iterator[Examined]:
     with doctor_room.filmed(folder, late="cam2") as room:
+        room.wait_until_said("fusion", "epochs_differ")
         yield room.judged()
 
 
@@ -60,9 +62,9 @@ CAMERAS: dict[str, Trouble] = {
     ),
     "a camera was moved": Trouble(
         camera_moved,
-        "camera 'cam1'",
-        r"the calibration of camera 'cam1' is doubtful: \d+% of its view",
-        "calibrate it again",
+        "calibration",
+        "cam1 does not agree with the calibration",
+        "move back what was moved, calibrate anew",
         "warning",
     ),
     "a camera shows another loop of its film": Trouble(

@@ -134,7 +134,7 @@ describe('the phase', () => {
 
 describe('what makes the figure', () => {
   const said = (state: 'ok' | 'degraded' | 'gone' | 'silent' | 'failed', name = 'fusion') => ({
-    processes: [{ name, state, reason: '', age_s: 0, cpu_cores: 0, rss_mb: 0, restarts: 0 }],
+    processes: [{ name, state, reason: '', age_s: 0, cpu_cores: 0, rss_mib: 0, restarts: 0 }],
   });
 
   it('is missed as soon as the box says that it is gone, hangs or failed', () => {

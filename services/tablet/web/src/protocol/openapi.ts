@@ -93,13 +93,13 @@ export interface components {
             used_cores: number | null;
             /** Granted Cores */
             granted_cores: number | null;
-            /** Memory Free Mb */
-            memory_free_mb: number | null;
+            /** Memory Free Mib */
+            memory_free_mib: number | null;
             /**
-             * Disk Free Mb
+             * Disk Free Mib
              * @description room where lessons and logs are kept
              */
-            disk_free_mb: number | null;
+            disk_free_mib: number | null;
             /** Temperature C */
             temperature_c: number | null;
             /**
@@ -129,15 +129,15 @@ export interface components {
              * State
              * @enum {string}
              */
-            state: "ok" | "degraded" | "failed" | "silent" | "gone";
+            state: "starting" | "ok" | "degraded" | "failed" | "silent" | "gone";
             /** Reason */
             reason: string;
             /** Age S */
             age_s: number;
             /** Cpu Cores */
             cpu_cores: number | null;
-            /** Rss Mb */
-            rss_mb: number | null;
+            /** Rss Mib */
+            rss_mib: number | null;
             /**
              * Restarts
              * @description times that it had to be started again since the box was started

@@ -156,6 +156,7 @@ export const text = {
     },
     processStates: {
       ok: 'ok',
+      starting: 'starting',
       degraded: 'degraded',
       failed: 'failed',
       silent: 'silent',
