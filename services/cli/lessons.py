@@ -92,7 +92,7 @@ def _begun(row: LessonRow) -> dt.datetime:
 
 def _entry(folder: Path, row: LessonRow) -> dict[str, object]:
     """A lesson as programs read it."""
-    suffix = PART_SUFFIX if row.state == "unfinished" else SUFFIX
+    suffix = PART_SUFFIX if row.state in {"recording", "unfinished"} else SUFFIX
     return {
         "lesson": row.lesson,
         "title": row.title,

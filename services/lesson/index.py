@@ -9,11 +9,12 @@ import structlog
 
 from models.errors import UserError
 from services.lesson.layout import PART_SUFFIX, SUFFIX
-from services.lesson.lesson_file import LessonWriter
+from services.lesson.lesson_file import LessonWriter, is_being_written
 from services.lesson.lesson_reader import open_lesson, read_header
+from services.lesson.survey import survey
 
 NAME = "index.sqlite"
-_VERSION = 1
+_VERSION = 2
 _PATIENCE_S = 5.0
 """How long to wait for another process that writes."""
 
@@ -28,11 +29,11 @@ class LessonRow:
         lesson: its name, which is the file's without suffix.
         title: what people call it.
         started_s: seconds since 1970 (UTC).
-        seconds: from the first entry to the last.
+        seconds: from the first entry to the last; while it is being recorded, since its start.
         bytes: of the file.
         gaps: interruptions.
         segments: stretches that replay in one go.
-        state: "finished"; "unfinished", which is being recorded, or was when its recorder died; "damaged".
+        state: "finished"; "recording"; "unfinished", which was being recorded when its recorder died; "damaged".
         problem: what a person is told who opens it; empty if nothing is wrong.
         changed_ns: when the file was changed last, by which a changed file is known.
     """
@@ -136,7 +137,8 @@ class LessonIndex:
                 continue  # Finished or removed meanwhile.
             lesson = name_of(path)
             row = known.get(lesson)
-            if row is None or (row.bytes, row.changed_ns) != (status.st_size, status.st_mtime_ns):
+            # A recorder that dies does not change its file.
+            if row is None or row.state == "recording" or (row.bytes, row.changed_ns) != (status.st_size, status.st_mtime_ns):
                 row = _read(path, lesson, status.st_size, status.st_mtime_ns)
             yield row
 
@@ -204,11 +206,15 @@ def _read(path: Path, lesson: str, size: int, changed_ns: int) -> LessonRow:
     title, started_s, seconds, gaps, segments, state, problem = "", changed_ns * 1e-9, 0.0, 0, 0, "finished", ""
     try:
         if path.name.endswith(PART_SUFFIX):
-            state = "unfinished"
             with path.open("rb") as file:
                 header = read_header(path, file)
-            title, started_s = header.title, header.started_s
-            seconds = max(changed_ns * 1e-9 - started_s, 0.0)
+                title, started_s = header.title, header.started_s
+                if is_being_written(file):
+                    # Reading it all each time would take longer and longer.
+                    state, seconds = "recording", max(changed_ns * 1e-9 - started_s, 0.0)
+                else:
+                    contents = survey(file).contents
+                    state, seconds, gaps, segments = "unfinished", contents.seconds, contents.gaps, contents.segments
         else:
             with open_lesson(path) as opened:
                 title, started_s = opened.header.title, opened.header.started_s

@@ -5,6 +5,7 @@ until its summary is written. Opening a file that a crash left is the same as go
 chunk, and from there it can be appended to or finished.
 """
 
+import fcntl
 import os
 import struct
 import zlib
@@ -72,6 +73,11 @@ class Contents:
     segments: int = 0
     segment_ns: int = 0
 
+    @property
+    def seconds(self) -> float:
+        """From the first entry to the last, with the gaps."""
+        return (self.chunks[-1].message_end_time - self.chunks[0].message_start_time) * 1e-9 if self.chunks else 0.0
+
     def take_chunk(self, start: int, length: int, chunk: Chunk, messages: Sequence[Message], mark: Mark) -> None:
         """Note a chunk that lies at byte `start`."""
         for message in messages:
@@ -97,7 +103,7 @@ class Contents:
 
 
 class LessonWriter:
-    """An unfinished lesson file that is open for writing.
+    """An unfinished lesson file that is open for writing, and locked as long as it is.
 
     Args:
         path: of the file, with `PART_SUFFIX`.
@@ -111,6 +117,8 @@ class LessonWriter:
         self.header = header
         self._file = file
         self._contents = contents
+        with suppress(OSError):  # A list that looks at this moment may be wrong once; nothing else depends on it.
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
     @classmethod
     def create(cls, folder: Path, name: str, header: LessonHeader) -> "LessonWriter":
@@ -139,8 +147,7 @@ class LessonWriter:
     @property
     def recorded_s(self) -> float:
         """Length of what is safe on the disk, from the first entry to the last, with the gaps."""
-        chunks = self._contents.chunks
-        return (chunks[-1].message_end_time - chunks[0].message_start_time) * 1e-9 if chunks else 0.0
+        return self._contents.seconds
 
     @property
     def gaps(self) -> int:
@@ -211,6 +218,18 @@ class LessonWriter:
             raise
         contents.end += len(data)
         contents.checksum = zlib.crc32(data, contents.checksum)
+
+
+def is_being_written(file: BinaryIO) -> bool:
+    """Whether a `LessonWriter` has the file of that name open, in any process."""
+    try:
+        fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:
+        return False  # The file system has no locks.
+    fcntl.flock(file, fcntl.LOCK_UN)
+    return False
 
 
 def _chunk(messages: list[Message]) -> Chunk:

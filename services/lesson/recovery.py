@@ -7,39 +7,20 @@ in any other way, a copy is kept beside what was recovered. No file is overwritt
 import os
 import shutil
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
 
 import structlog
-from mcap.opcode import Opcode
-from mcap.records import MetadataIndex
 
 from models.errors import UserError
-from services.lesson import lesson_header
 from services.lesson.free_names import rename_free, reserve
 from services.lesson.index import LessonIndex
-from services.lesson.layout import PART_SUFFIX, Mark
-from services.lesson.lesson_file import Contents, LessonWriter
-from services.lesson.lesson_reader import NewerLessonError, PartDecoder, read_header
-from services.lesson.mcap_records import CutOffError, DamageError, open_chunk, walk
+from services.lesson.layout import PART_SUFFIX
+from services.lesson.lesson_file import LessonWriter
+from services.lesson.lesson_reader import NewerLessonError, read_header
+from services.lesson.survey import survey
 from services.support.sync import sync_folder
 
 DAMAGED_SUFFIX = f"{PART_SUFFIX}.damaged"
 log = structlog.get_logger()
-
-_BEGINNING = (Opcode.HEADER, Opcode.METADATA, Opcode.SCHEMA, Opcode.CHANNEL)
-_DATA_END_BYTES = 4
-
-
-class Survey(NamedTuple):
-    """What was found in a file.
-
-    Attributes:
-        contents: up to where it can be read.
-        damage: why it cannot be read further; empty if it was only cut off or if its summary follows, which is made anew.
-    """
-
-    contents: Contents
-    damage: str
 
 
 def recover(folder: Path, run_ns: int) -> LessonWriter | None:
@@ -107,31 +88,6 @@ def reopen(path: Path) -> LessonWriter:
         file.close()
         raise
     return LessonWriter(path, file, header, contents)
-
-
-def survey(file: BinaryIO) -> Survey:
-    """What a file with a good header holds, up to its first damage or, if there is none, its summary."""
-    contents, decoder = Contents(), PartDecoder()
-    file.seek(0)
-    try:
-        for place in walk(file):
-            if place.opcode == Opcode.DATA_END and len(place.body) == _DATA_END_BYTES:
-                break
-            if place.opcode == Opcode.METADATA:
-                contents.metadata = MetadataIndex(place.start, place.end - place.start, lesson_header.NAME)
-            if place.opcode == Opcode.CHUNK:
-                opened = open_chunk(place)
-                part = decoder.decode(opened)
-                mark = Mark(part.segment_ns, part.sequence, part.gap)
-                contents.take_chunk(place.start, place.end - place.start, opened.chunk, opened.messages, mark)
-            elif contents.chunks or place.opcode not in _BEGINNING:
-                return Survey(contents, f"the record at byte {place.start} is of no kind that may stand there")
-            contents.end, contents.checksum = place.end, place.checksum
-    except CutOffError:
-        pass
-    except DamageError as error:
-        return Survey(contents, str(error))
-    return Survey(contents, "")
 
 
 def _keep(path: Path) -> Path:

@@ -21,7 +21,8 @@ from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import Contents, LessonWriter
 from services.lesson.lesson_reader import LessonPart, open_lesson
 from services.lesson.mcap_records import walk
-from services.lesson.recovery import DAMAGED_SUFFIX, recover, reopen, survey
+from services.lesson.recovery import DAMAGED_SUFFIX, recover, reopen
+from services.lesson.survey import survey
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
 
 PARTS = (*(part(BEGIN_NS, k) for k in range(3)), *(part(BEGIN_NS + 9 * SECOND_NS, k) for k in range(3)))

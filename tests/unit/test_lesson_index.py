@@ -12,7 +12,7 @@ from services.lesson import index
 from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX
 from services.lesson.lesson_file import LessonWriter
-from services.lesson.recovery import recover
+from services.lesson.recovery import recover, reopen
 from tests.synthetic.broken_index import break_index
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
 
@@ -86,12 +86,40 @@ def test_an_index_of_another_version_is_made_anew(tmp_path: Path) -> None:
     assert [row.lesson for row in LessonIndex(tmp_path).lessons()] == ["a"]
 
 
-def test_the_lesson_that_is_being_recorded_is_listed_as_unfinished(tmp_path: Path) -> None:
-    file = record(tmp_path, "a", finish=False)
-    os.utime(file, ns=(0, 1_700_000_065 * SECOND_NS))
-    (row,) = LessonIndex(tmp_path).lessons()
-    assert (row.title, row.state) == ("title of a", "unfinished")
+def test_the_lesson_that_is_being_recorded_is_listed_as_such_and_when_its_recorder_died_as_unfinished(tmp_path: Path) -> None:
+    lessons = LessonIndex(tmp_path)
+    writer = LessonWriter.create(tmp_path, "a", header("7b"))
+    for k in range(4):
+        writer.append(part(BEGIN_NS, k))
+    os.utime(writer.path, ns=(0, 1_700_000_065 * SECOND_NS))
+    (row,) = lessons.lessons()
+    assert (row.title, row.state) == ("7b", "recording")
     assert row.seconds == pytest.approx(60.0)
+    recorded_s = writer.recorded_s
+    writer.close()
+    (row,) = lessons.lessons()
+    assert (row.title, row.state, row.segments) == ("7b", "unfinished", 1)
+    assert row.seconds == pytest.approx(recorded_s)
+
+
+def test_a_lesson_that_recovery_goes_on_with_is_being_recorded(tmp_path: Path) -> None:
+    writer = reopen(record(tmp_path, "a", finish=False))
+    assert [row.state for row in LessonIndex(tmp_path).lessons()] == ["recording"]
+    writer.finish()
+    assert [row.state for row in LessonIndex(tmp_path).lessons()] == ["finished"]
+
+
+def test_a_cut_of_a_lesson_is_as_long_as_what_recovery_brings_back(tmp_path: Path) -> None:
+    whole = record(tmp_path, "whole", parts=2).read_bytes()
+    (tmp_path / "whole.mcap").unlink()
+    cut = tmp_path / f"cut{PART_SUFFIX}"
+    cut.write_bytes(whole[: len(whole) // 2])
+    (listed,) = LessonIndex(tmp_path).lessons()
+    assert listed.state == "unfinished"
+    assert recover(tmp_path, run_ns=0) is None
+    (recovered,) = LessonIndex(tmp_path).lessons()
+    assert recovered.state == "finished"
+    assert listed.seconds == pytest.approx(recovered.seconds)
 
 
 def test_a_file_that_cannot_be_read_is_listed_with_its_problem(tmp_path: Path) -> None:
