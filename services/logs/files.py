@@ -33,3 +33,11 @@ def log_numbers(folder: Path) -> list[int]:
     except FileNotFoundError:
         return []
     return sorted(int(found[1]) for name in names if (found := _NAME.fullmatch(name)))
+
+
+def changed_ns(file: Path) -> int:
+    """When a file was written to last, on the wall clock; 0 if it was the oldest, and went."""
+    try:
+        return file.stat().st_mtime_ns
+    except FileNotFoundError:
+        return 0

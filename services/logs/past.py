@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Iterator
 from pathlib import Path
 
-from services.logs.files import log_numbers, log_path
+from services.logs.files import changed_ns, log_numbers, log_path
 from services.logs.query import Query
 from services.logs.reader import Line, LogReader
 
@@ -42,14 +42,7 @@ def _files(folder: Path, query: Query) -> list[int]:
     if query.since is None:
         return numbers
     since_s = query.since.timestamp()
-    return [number for number in numbers[:-1] if _changed_s(log_path(folder, number)) >= since_s] + numbers[-1:]
-
-
-def _changed_s(path: Path) -> float:
-    try:
-        return path.stat().st_mtime
-    except FileNotFoundError:
-        return 0.0  # It was the oldest, and went.
+    return [number for number in numbers[:-1] if changed_ns(log_path(folder, number)) >= since_s * 1e9] + numbers[-1:]
 
 
 def _past(reader: LogReader, *, torn: bool) -> Iterator[Line]:

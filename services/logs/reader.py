@@ -5,7 +5,7 @@ from collections.abc import Generator, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from services.logs.files import log_numbers, log_path
+from services.logs.files import changed_ns, log_numbers, log_path
 from services.logs.record import LogRecord, decode
 
 _CHUNK_BYTES = 2**20
@@ -30,8 +30,8 @@ class Line(NamedTuple):
 class LogReader:
     """Every line once, in the order in which they were written.
 
-    A part of a line is not read before the whole is there. A damaged line is handed on as such. Files that were deleted before they
-    could be read are told as a damaged line.
+    A part of a line is not read before the whole is there. A damaged line is handed on as such. What people do to the files is told
+    as a damaged line: files that were deleted before they could be read, a file that was emptied, a log that was begun anew.
 
     Args:
         folder: the log's.
@@ -52,11 +52,15 @@ class LogReader:
         """All whole lines that were not read yet."""
         while self._file is not None or (yield from self._open_next()):
             yield from self._whole_lines()
-            if not self._is_left_behind():
+            anew = self._begun_anew()
+            if not anew and not self._is_left_behind():
                 return
             # Nobody writes to a file once there is a newer one: what is read now is its end.
             yield from self._whole_lines()
             yield from self.torn()
+            if anew:
+                yield Line(self._name(), 0, b"the log was deleted and begun anew", None)
+                self._first, self._number = anew[0], 0
             self.close()
 
     def torn(self) -> Iterator[Line]:
@@ -85,6 +89,9 @@ class LogReader:
 
     def _whole_lines(self) -> Iterator[Line]:
         assert self._file is not None  # noqa: S101 - callers have opened one
+        if os.fstat(self._file).st_size < self._offset:
+            yield Line(self._name(), 0, b"the file was emptied; what it held before is gone", None)
+            self._offset = self._lines = 0
         name, position, rest = self._name(), self._offset, b""
         while chunk := os.pread(self._file, _CHUNK_BYTES, position):
             position += len(chunk)
@@ -96,6 +103,15 @@ class LogReader:
 
     def _is_wanted(self, number: int) -> bool:
         return number >= self._first and (self._last is None or number <= self._last)
+
+    def _begun_anew(self) -> list[int]:
+        """The files of another log that stands where ours was deleted: numbered no higher, and changed no earlier."""
+        assert self._file is not None  # noqa: S101 - callers have opened one
+        own = os.fstat(self._file)
+        if own.st_nlink:
+            return []
+        lower = [number for number in log_numbers(self._folder) if number <= self._number]
+        return [number for number in lower if changed_ns(log_path(self._folder, number)) >= own.st_mtime_ns]
 
     def _is_left_behind(self) -> bool:
         return any(number > self._number for number in log_numbers(self._folder))

@@ -1,6 +1,7 @@
 """Writing the log on discs that fail, and reading it while it is written."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -111,6 +112,70 @@ def test_files_that_are_deleted_by_hand_do_not_end_the_log_nor_the_following(tmp
     writer.write(numbered(1))
     assert numbers(list(reader.poll())) == [1]
     writer.close()
+
+
+def test_whoever_follows_a_file_that_is_emptied_is_told_and_follows_on(tmp_path: Path) -> None:
+    writer, reader = LogWriter(tmp_path, 10**6, 3), LogReader(tmp_path)
+    for number in range(5):
+        writer.write(numbered(number))
+    assert numbers(list(reader.poll())) == list(range(5))
+    os.truncate(tmp_path / "kinebox.log", 0)
+    writer.write(numbered(5))
+    told, line = reader.poll()
+    assert told.record is None
+    assert b"emptied" in told.raw
+    assert (numbers([line]), line.number) == ([5], 1)
+    writer.write(numbered(6))
+    assert numbers(list(reader.poll())) == [6]
+    writer.close()
+    reader.close()
+
+
+@pytest.mark.parametrize("ours", [1, 3])
+@pytest.mark.parametrize("theirs", [1, 2])
+def test_whoever_follows_a_log_that_was_deleted_and_begun_anew_is_told_and_follows_that(
+    tmp_path: Path, ours: int, theirs: int
+) -> None:
+    folder = tmp_path / "logs"
+    log_path(folder, ours).parent.mkdir()
+    log_path(folder, ours).write_bytes(encode(numbered(0)))
+    reader = LogReader(folder, ours)
+    assert numbers(list(reader.poll())) == [0]
+    shutil.rmtree(folder)
+    assert list(reader.poll()) == []
+    # A box that starts finds no log: it counts from 1.
+    writer = LogWriter(folder, 1000, 10)
+    count = 0
+    while log_numbers(folder)[-1] < theirs:
+        count += 1
+        writer.write(numbered(count))
+    count += 1
+    writer.write(numbered(count))
+    told, *lines = reader.poll()
+    assert told.record is None
+    assert b"deleted" in told.raw
+    assert numbers(lines) == list(range(1, count + 1))
+    writer.write(numbered(count + 1))
+    assert numbers(list(reader.poll())) == [count + 1]
+    writer.close()
+    reader.close()
+
+
+def test_nothing_is_told_twice_because_the_newest_file_was_deleted(tmp_path: Path) -> None:
+    writer, reader = LogWriter(tmp_path, 1000, 10), LogReader(tmp_path)
+    for number in range(20):
+        writer.write(numbered(number))
+    followed = numbers(list(reader.poll()))
+    *older, newest = log_numbers(tmp_path)
+    for file in older:
+        os.utime(log_path(tmp_path, file), (0, 0))
+    log_path(tmp_path, newest).unlink()
+    followed += numbers(list(reader.poll()))
+    writer.write(numbered(20))
+    followed += numbers(list(reader.poll()))
+    assert followed == list(range(21))
+    writer.close()
+    reader.close()
 
 
 def test_a_smaller_bound_is_kept_from_the_next_start_on(tmp_path: Path) -> None:
