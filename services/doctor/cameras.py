@@ -2,8 +2,9 @@
 
 from models.messages.health import Health
 from services.doctor.finding import Finding, Level
-from services.tablet.camera_state import HeardHealth, Presence, camera_status
+from services.tablet.camera_state import HeardHealth, camera_status
 from services.tablet.messages import CameraReason, CameraStatus
+from services.tablet.presence import Presence
 
 _REMEDIES: dict[CameraReason, str] = {
     "no_frames": "check its cable, its power and its file; unplug it and plug it in again",
@@ -36,7 +37,8 @@ def judge_camera(name: str, health: Health, now_ns: int) -> list[Finding]:
 
 
 def _status(name: str, health: Health, now_ns: int) -> CameraStatus:
-    return camera_status(name, HeardHealth(health, now_ns), Presence(True, now_ns), True, now_ns)
+    presence = Presence(True, now_ns)
+    return camera_status(name, HeardHealth(health, now_ns), presence, given_up=False, used=True, now_ns=now_ns)
 
 
 def _words(status: CameraStatus, health: Health) -> str:

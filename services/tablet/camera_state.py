@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from models.messages.health import CameraHealth, Health
 from services.tablet.messages import CameraReason, CameraState, CameraStatus
+from services.tablet.presence import Presence
 
 START_GRACE_NS = 20_000_000_000
 """So long may a camera be starting after its process, or this server, came: networks are loaded."""
@@ -17,6 +18,8 @@ SPARSE_HZ = 8.0
 BACKLOG_MS = 250.0
 """A frame older than this when its turn came shows a figure that visibly trails."""
 
+_GIVEN_UP: tuple[CameraState, CameraReason] = ("lost", "given_up")
+
 
 @dataclass(frozen=True)
 class HeardHealth:
@@ -26,32 +29,28 @@ class HeardHealth:
     arrived_ns: int
 
 
-@dataclass(frozen=True)
-class Presence:
-    """Whether a process holds its token on the bus (None: not seen yet), and since when (CLOCK_MONOTONIC)."""
-
-    alive: bool | None
-    since_ns: int
-
-
 def known(figure: float) -> float | None:
     """A figure from the bus; None if it is none (NaN or infinite), which JSON could not carry."""
     return figure if math.isfinite(figure) else None
 
 
-def camera_status(name: str, heard: HeardHealth | None, presence: Presence, used: bool, now_ns: int) -> CameraStatus:
+def camera_status(
+    name: str, heard: HeardHealth | None, presence: Presence, *, given_up: bool, used: bool, now_ns: int
+) -> CameraStatus:
     """Judge one camera.
 
     Args:
         name: the camera.
         heard: its process's newest health; None if there was none since the process came.
         presence: its process on the bus.
+        given_up: the supervisor does not start its process any more.
         used: the newest motion rests on it too.
         now_ns: CLOCK_MONOTONIC.
     """
-    state, reason = _judge(heard, presence, now_ns)
+    state, reason = _GIVEN_UP if given_up else _judge(heard, presence, now_ns)
     camera = heard.health.camera if heard else None
-    measured = camera if state != "lost" else None  # the last figures of a lost camera would look like life
+    here = state not in ("lost", "unknown")
+    measured = camera if here else None  # the last figures of a lost camera would look like life
     return CameraStatus(
         name=name,
         state=state,
@@ -63,7 +62,7 @@ def camera_status(name: str, heard: HeardHealth | None, presence: Presence, used
         network=measured.network if measured else None,
         backlog_ms=known(measured.backlog_ms) if measured else None,
         skipped=camera.skipped if camera else None,
-        used=used and state != "lost",
+        used=used and here,
     )
 
 
@@ -72,11 +71,14 @@ def _judge(heard: HeardHealth | None, presence: Presence, now_ns: int) -> tuple[
         return "lost", "failed"
     if presence.alive is False:
         return "lost", "process_gone"
-    if heard is not None and heard.health.state == "starting" and now_ns - heard.arrived_ns <= SILENT_AFTER_NS:
-        return "starting", "starting"
+    silent = heard is None or now_ns - heard.arrived_ns > SILENT_AFTER_NS
+    if silent and presence.cut_off:
+        return "unknown", "unheard"
     if heard is None or heard.health.camera is None:
-        return ("starting", "starting") if now_ns - presence.since_ns < START_GRACE_NS else ("lost", "never_seen")
-    if now_ns - heard.arrived_ns > SILENT_AFTER_NS:
+        says_so = heard is not None and not silent and heard.health.state == "starting"
+        young = now_ns - presence.since_ns < START_GRACE_NS
+        return ("starting", "starting") if says_so or young else ("lost", "never_seen")
+    if silent:
         return "lost", "silent"
     return _judge_rates(heard.health.camera, heard.health.state == "degraded")
 

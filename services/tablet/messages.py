@@ -10,12 +10,15 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from models.messages.trouble import MachineCode
 
-CameraState = Literal["starting", "ok", "slow", "lost"]
-ProcessState = Literal["starting", "ok", "degraded", "failed", "silent", "gone"]
+CameraState = Literal["starting", "ok", "slow", "lost", "unknown"]
+ProcessState = Literal["starting", "ok", "degraded", "failed", "silent", "gone", "unknown"]
+"""Unknown: nobody can be heard, because the bus is away."""
 CameraReason = Literal[
     "none",
     "starting",  # not heard of yet, and the box has only just started
     "never_seen",  # not heard of since the box started
+    "unheard",  # the bus is away, so that nobody is heard
+    "given_up",  # its process failed too often, and is not started again
     "process_gone",  # its process ended
     "silent",  # its process is there and says nothing
     "failed",  # its process says that it failed; see `detail`

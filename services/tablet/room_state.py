@@ -6,13 +6,14 @@ Reads no clock: every method is told the time, so that each state can be tested 
 import math
 from collections import deque
 
-from models.messages.health import Health, SupervisorHealth
+from models.messages.health import Health, Restarts, SupervisorHealth
 from models.messages.motion import JointState, Motion
 from models.messages.trouble import MACHINE_CODES
 from models.process import EDGE, RECORDER, REPLAY, ROUTER, Playback, process_name
 from services.support.machine_troubles import machine_troubles
-from services.tablet.camera_state import SILENT_AFTER_NS, HeardHealth, Presence, camera_status, known
+from services.tablet.camera_state import SILENT_AFTER_NS, HeardHealth, camera_status, known
 from services.tablet.messages import CameraStatus, Latency, MachineStatus, ProcessState, ProcessStatus, Recording, Replay, Status
+from services.tablet.presence import Presences
 
 WINDOW_NS = 3_000_000_000
 """Rates and latencies are those of the last so many nanoseconds."""
@@ -69,11 +70,10 @@ class RoomState:
         self._room = room
         self._cameras = cameras
         self._wished_hz = wished_hz
-        self._started_ns = started_ns
         self._playback = playback
         self._processes = {ROUTER, RECORDER, REPLAY, "tablet", "supervisor", *(process_name(EDGE, name) for name in cameras)}
         self._health: dict[str, HeardHealth] = {}
-        self._presence: dict[str, Presence] = {}
+        self._presences = Presences(ROUTER if playback is None else REPLAY, started_ns)
         self._motion: Motion | None = None
         self._meter = MotionMeter()
         self.rejected_bus_messages = 0
@@ -96,10 +96,9 @@ class RoomState:
         """A process joined or left the bus."""
         if process not in self._processes:
             return
-        before = self._presence.get(process)
-        if alive and before is not None and not before.alive:
+        if alive and self._gone(process, now_ns):
             self._health.pop(process, None)  # what its predecessor said is no news of this one
-        self._presence[process] = Presence(alive, now_ns)
+        self._presences.note(process, alive, now_ns)
 
     def status(self, now_ns: int, clients: int) -> Status:
         """The room as it is at `now_ns` (CLOCK_MONOTONIC)."""
@@ -128,12 +127,12 @@ class RoomState:
 
     def _camera(self, name: str, used: bool, now_ns: int) -> CameraStatus:
         process = process_name(EDGE, name)
-        presence = self._presence.get(process, Presence(None, self._started_ns))
-        return camera_status(name, self._health.get(process), presence, used, now_ns)
+        presence, restarts = self._presences.of(process, now_ns), self._restarts(process)
+        given_up = restarts is not None and bool(restarts.given_up)
+        return camera_status(name, self._health.get(process), presence, given_up=given_up, used=used, now_ns=now_ns)
 
-    def _gone(self, process: str) -> bool:
-        presence = self._presence.get(process)
-        return presence is not None and presence.alive is False
+    def _gone(self, process: str, now_ns: int) -> bool:
+        return self._presences.of(process, now_ns).alive is False
 
     def _used(self, now_ns: int) -> frozenset[str]:
         motion = self._motion
@@ -144,7 +143,7 @@ class RoomState:
     def _said(self, process: str, now_ns: int) -> Health | None:
         """What a process says of itself; None if it is silent or gone."""
         heard = self._health.get(process)
-        if heard is None or now_ns - heard.arrived_ns > SILENT_AFTER_NS or self._gone(process):
+        if heard is None or now_ns - heard.arrived_ns > SILENT_AFTER_NS or self._gone(process, now_ns):
             return None
         return heard.health
 
@@ -173,10 +172,10 @@ class RoomState:
         health, age_ns = heard.health, now_ns - heard.arrived_ns
         state: ProcessState = health.state
         # One that was given up is gone too, but that it does not come back is what a person must know.
-        if self._gone(health.process) and state != "failed":
+        if self._gone(health.process, now_ns) and state != "failed":
             state = "gone"
         elif age_ns > SILENT_AFTER_NS:
-            state = "silent"
+            state = "unknown" if self._presences.of(health.process, now_ns).cut_off else "silent"
         return ProcessStatus(
             name=health.process,
             state=state,
@@ -184,7 +183,7 @@ class RoomState:
             age_s=age_ns * 1e-9,
             cpu_cores=known(health.cpu_cores),
             rss_mib=known(health.rss_mib),
-            restarts=self._restarts(health.process),
+            restarts=self._restart_count(health.process),
         )
 
     def _supervisor(self) -> SupervisorHealth | None:
@@ -192,11 +191,13 @@ class RoomState:
         heard = self._health.get("supervisor")
         return heard.health.supervisor if heard else None
 
-    def _restarts(self, process: str) -> int | None:
+    def _restarts(self, process: str) -> Restarts | None:
         supervisor = self._supervisor()
-        if supervisor is None:
-            return None
-        return next((restarts.count for restarts in supervisor.restarts if restarts.process == process), 0)
+        return next((restarts for restarts in supervisor.restarts if restarts.process == process), None) if supervisor else None
+
+    def _restart_count(self, process: str) -> int | None:
+        restarts = self._restarts(process)
+        return restarts.count if restarts else None if self._supervisor() is None else 0
 
     def _machine(self, now_ns: int) -> MachineStatus | None:
         health = self._said("supervisor", now_ns)

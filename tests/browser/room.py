@@ -10,8 +10,9 @@ import numpy as np
 from models.camera.rig import Rig
 from models.config.site import SITE_VERSION, CameraConfig, Site, TabletConfig
 from models.messages import codec, topics
-from models.messages.health import CameraHealth, FusionHealth, Health, MachineHealth, RecorderHealth, SupervisorHealth
+from models.messages.health import CameraHealth, FusionHealth, Health, MachineHealth, RecorderHealth, Restarts, SupervisorHealth
 from models.messages.motion import CameraUse, JointState, Motion
+from models.messages.trouble import Trouble
 from models.process import Bus, ProcessContext, Resources
 from models.skeleton import coco
 from services.bus.memory import MemoryBus, MemoryRouter
@@ -41,6 +42,7 @@ class Scene:
         publishing: whether motions are sent at all.
         states: (17,) state of each joint.
         lost: cameras whose processes are gone.
+        given_up: processes, by their names on the bus, that the supervisor starts no more.
         fresh_hz: inferences a second of every camera.
         pupil: what fusion says about the pupil.
         machine: what the supervisor measured of the machine.
@@ -51,6 +53,7 @@ class Scene:
     publishing: bool = True
     states: dict[int, JointState] = field(default_factory=dict)
     lost: frozenset[str] = frozenset()
+    given_up: frozenset[str] = frozenset()
     fresh_hz: float = 14.6
     pupil: str = "found"
     machine: MachineHealth = MACHINE
@@ -150,14 +153,18 @@ class Room:
         for index, (camera, bus) in enumerate(self._edges.items()):
             rates = CameraHealth(camera, 30.0, scene.fresh_hz - 0.3 * index, 15.0, 12 + 7 * index, 21.0 + 3 * index, "thunder", {})
             self._say(bus, Health(f"edge-{camera}", 100 + index, now_ns, "ok", (), 0.36, 214.0, camera=rates))
-        supervisor = SupervisorHealth("0.1.0", now_ns, ())
+        restarts = tuple(Restarts(name, 5, now_ns, "was ended by SIGKILL", "ended 6 times") for name in sorted(scene.given_up))
+        supervisor = SupervisorHealth("0.1.0", now_ns, restarts)
+        for name in scene.given_up:
+            self._say(self._fusion, Health(name, 98, now_ns, "failed", (Trouble("given_up", "ended 6 times"),), 0.0, 0.0))
         said = Health("supervisor", 98, now_ns, "ok", (), 0.01, 30.0, machine=scene.machine, supervisor=supervisor)
         self._say(self._fusion, said)
         fusion = FusionHealth(29.8, 4.2, 0.83, 0, {}, "found" if scene.pupil == "found" else "searching")
         lesson = "" if scene.recorded_s is None else "2026-11-22-7b"
         recorder = RecorderHealth(lesson, "7b, throwing", scene.recorded_s or 0.0, 2_500_000, 0)
         self._say(self._fusion, Health("recorder", 98, now_ns, "ok", (), 0.01, 60.0, recorder=recorder))
-        self._say(self._fusion, Health("fusion", 99, now_ns, "ok", (), 0.21, 186.0, fusion=fusion))
+        if "fusion" not in scene.given_up:
+            self._say(self._fusion, Health("fusion", 99, now_ns, "ok", (), 0.21, 186.0, fusion=fusion))
 
     def _say(self, bus: MemoryBus, health: Health) -> None:
         bus.publish(topics.health(health.process), codec.encode(health))

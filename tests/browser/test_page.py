@@ -73,7 +73,7 @@ def test_nothing_is_drawn_while_nothing_changes(page: Page, room: Room) -> None:
     with_scene(room, publishing=False)
     page.goto(room.page)
     shown = Shown(page)
-    shown.wait_for_phase("waiting")
+    shown.wait_for_phase("searching")
     drawn = shown.number("drawn")
     page.wait_for_timeout(1500)
     assert shown.number("drawn") - drawn <= 2
@@ -138,6 +138,33 @@ def test_a_pupil_who_leaves_is_waited_for(page: Page, room: Room) -> None:
     shown.wait_for_phase("waiting")
     expect(page.get_by_text("Nobody in view")).to_be_visible()
     assert shown.number("coloured") == 0
+
+
+def test_nobody_is_said_to_be_missing_before_the_box_has_looked(page: Page, room: Room) -> None:
+    with_scene(room, publishing=False)
+    page.goto(room.page)
+    Shown(page).wait_for_phase("searching")
+    expect(page.get_by_text("Looking for the pupil")).to_be_visible()
+    expect(page.locator("[data-state=ok]")).to_have_count(4)
+    expect(page.get_by_text("Nobody in view")).to_have_count(0)
+
+
+def test_a_fusion_that_is_given_up_is_said_with_what_to_do(page: Page, room: Room) -> None:
+    shown = open_live(page, room)
+    with_scene(room, publishing=False, given_up=frozenset({"fusion"}))
+    shown.wait_for_phase("failed")
+    expect(page.get_by_text("The box makes no figure any more")).to_be_visible()
+    expect(page.get_by_text("Start the box anew")).to_be_visible()
+    expect(page.get_by_text("lost")).to_have_count(0)
+    shown.wait_until("Number(d.coloured) === 0")
+
+
+def test_a_camera_that_is_given_up_is_told_from_one_that_returns(page: Page, room: Room) -> None:
+    open_live(page, room)
+    with_scene(room, lost=frozenset({CAMERAS[2]}), given_up=frozenset({f"edge-{CAMERAS[2]}"}))
+    expect(page.get_by_text("Camera 3 lost \N{EN DASH} the lesson goes on with three")).to_be_visible()
+    expect(page.get_by_text("Camera 3 does not come back by itself: check it, then start the box anew.")).to_be_visible()
+    expect(page.locator(f"[data-camera={CAMERAS[2]}]")).to_contain_text("until it is started anew")
 
 
 def test_guesses_alone_are_never_live(page: Page, room: Room) -> None:

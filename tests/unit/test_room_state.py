@@ -4,7 +4,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from models.messages.health import CameraHealth, FusionHealth, Health, RecorderHealth, ReplayHealth
+from models.messages.health import CameraHealth, FusionHealth, Health, RecorderHealth, ReplayHealth, Restarts, SupervisorHealth
 from models.messages.motion import CameraUse, JointState, Motion
 from models.messages.trouble import Trouble
 from models.process import Playback
@@ -126,6 +126,60 @@ def test_a_camera_that_the_supervisor_gave_up_says_why_instead_of_starting_for_e
     assert camera(state, T0 + S).detail == "camera 'a': a.avi is missing"
     state.set_alive("edge-a", False, T0 + S)
     assert judged(state, T0 + S) == ("lost", "failed")
+
+
+def given_up(process: str) -> Health:
+    supervisor = SupervisorHealth("1", T0, (Restarts(process, 5, T0, "was ended by SIGKILL", "ended 6 times within 60 s"),))
+    return Health("supervisor", 3, T0, "failed", (Trouble("given_up", f"{process} is given up"),), 0.0, 20.0, supervisor=supervisor)
+
+
+def test_a_camera_that_was_given_up_is_told_from_one_that_will_return() -> None:
+    state = room()
+    state.receive_health(given_up("edge-a"), T0)
+    state.receive_health(Health("edge-a", 3, T0, "failed", (Trouble("given_up", "ended 6 times"),), 0.0, 0.0), T0)
+    state.set_alive("edge-b", False, T0)
+    assert [entry.reason for entry in state.status(T0, 0).cameras] == ["given_up", "process_gone"]
+    assert judged(state, T0 + 60 * S) == ("lost", "given_up"), "it does not become true by silence that it returns"
+
+
+def everybody_at_work() -> RoomState:
+    state = room()
+    for process in ("fusion", "edge-a", "recorder", "tablet"):
+        state.set_alive(process, True, T0)
+    state.receive_health(health(), T0 + S)
+    return state
+
+
+@pytest.mark.parametrize("order", [("edge-a", "fusion"), ("fusion", "edge-a")])
+def test_cameras_have_not_stopped_because_the_router_did(order: tuple[str, str]) -> None:
+    state = everybody_at_work()
+    for index, process in enumerate(order):
+        state.set_alive(process, False, T0 + S + index)
+    assert judged(state, T0 + S + 300_000_000) == ("ok", "none")
+    assert judged(state, T0 + 9 * S) == ("unknown", "unheard"), "nobody can hear it, and that is not its fault"
+    assert camera(state, T0 + 9 * S).fresh_hz is None
+    states = {process.name: process.state for process in state.status(T0 + 9 * S, 0).processes}
+    assert states == {"edge-a": "unknown"}
+    state.set_alive("fusion", True, T0 + 9 * S)
+    state.set_alive("edge-a", True, T0 + 9 * S + 1)
+    state.receive_health(health(), T0 + 10 * S)
+    assert judged(state, T0 + 12 * S) == ("ok", "none")
+
+
+def test_a_camera_that_does_not_return_with_the_router_has_stopped() -> None:
+    state = everybody_at_work()
+    state.set_alive("edge-a", False, T0 + S)
+    state.set_alive("fusion", False, T0 + S)
+    state.set_alive("fusion", True, T0 + 2 * S)
+    assert judged(state, T0 + 3 * S) == ("ok", "none")
+    assert judged(state, T0 + 4 * S) == ("lost", "process_gone")
+
+
+def test_a_camera_that_stopped_before_the_router_did_is_not_forgotten() -> None:
+    state = everybody_at_work()
+    state.set_alive("edge-a", False, T0 + S)
+    state.set_alive("fusion", False, T0 + 3 * S)
+    assert judged(state, T0 + 3 * S) == ("lost", "process_gone")
 
 
 def test_rate_and_latency_are_those_of_the_last_seconds() -> None:

@@ -1,9 +1,12 @@
 import { figureAgeMs, Freshness, STALE_AFTER_MS, TOO_LATE_MS, underWayMs } from './connection/freshness';
+import { isDistant, Lateness } from './connection/lateness';
 import { Link } from './connection/link';
-import { figureInterrupted, phaseOf, type Phase } from './connection/phase';
+import { makerOf, phaseOf, type Phase } from './connection/phase';
 import { complete, showsSomebody, standing, unsure, type Pose } from './figure/pose';
 import { JointState, MotionFrameError, readMotionFrame, type MotionFrame } from './protocol/motionFrame';
+import type { Status } from './protocol/messages';
 import type { Room } from './state/room.svelte';
+import { Search } from './state/search';
 import { Stage } from './stage/stage';
 
 /** Words change at most so often: nobody can read faster. */
@@ -15,6 +18,8 @@ export class Viewer {
   private readonly link: Link;
   private readonly stage: Stage;
   private readonly freshness = new Freshness();
+  private readonly lateness = new Lateness(isDistant(location.hostname));
+  private readonly search = new Search();
   private readonly words: ReturnType<typeof setInterval>;
   private waiting: MotionFrame | null = null;
   private underWay = 0;
@@ -23,6 +28,7 @@ export class Viewer {
   private droppedMs = -Infinity;
   private delayMs: number | null = null;
   private figures = 0;
+  private turnMs = performance.now();
   private counted = { figures: 0, atMs: performance.now() };
 
   /**
@@ -43,14 +49,11 @@ export class Viewer {
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
     this.link = new Link(`${scheme}://${location.host}/ws`, {
       motion: (buffer) => this.receive(buffer),
-      status: (status) => {
-        this.room.status = status;
-        this.say();
-      },
+      status: (status) => this.learn(status),
       changed: () => this.changed(),
     });
     this.link.start();
-    this.words = setInterval(() => this.say(), WORDS_PERIOD_MS);
+    this.words = setInterval(() => this.turnComes(), WORDS_PERIOD_MS);
   }
 
   resetView(): void {
@@ -65,6 +68,22 @@ export class Viewer {
     clearInterval(this.words);
     this.link.stop();
     this.stage.dispose();
+  }
+
+  private learn(status: Status): void {
+    const nowMs = performance.now();
+    this.room.status = status;
+    this.lateness.noteStatus(status, nowMs);
+    this.search.note(status, nowMs);
+    this.say();
+  }
+
+  private turnComes(): void {
+    const nowMs = performance.now();
+    // A page that nobody sees is called seldom on purpose.
+    if (!document.hidden) this.lateness.noteTurn(nowMs - this.turnMs - WORDS_PERIOD_MS, nowMs);
+    this.turnMs = nowMs;
+    this.say();
   }
 
   private receive(buffer: ArrayBuffer): void {
@@ -124,6 +143,8 @@ export class Viewer {
     this.droppedMs = -Infinity;
     if (!this.link.connected) this.room.status = null; // what was known of the cameras is no longer
     this.freshness.reset();
+    this.lateness.reset();
+    this.search.reset();
     this.hasFigure = false;
     this.delayMs = null;
     this.say();
@@ -137,14 +158,16 @@ export class Viewer {
       failures: this.link.failures,
       hasFigure: this.hasFigure,
       stale: this.freshness.isStale(nowMs),
-      interrupted: figureInterrupted(this.room.status),
+      maker: makerOf(this.room.status),
       dropping: nowMs - this.droppedMs < STALE_AFTER_MS,
-      pupil: this.room.status?.pupil ?? 'unknown',
+      nobody: this.search.inVain(nowMs),
     });
     if (phase !== 'live' && this.stage.colouredShare > 0) this.stage.show(unsure(this.pose));
     this.room.phase = phase;
+    this.room.lateCause = this.lateness.cause(nowMs);
     this.room.figureAgeS = this.hasFigure ? Math.floor(this.freshness.ageMs(nowMs) / 1000) : null;
-    this.room.delayMs = phase === 'live' ? this.delayMs : null;
+    // What is played is as old as its lesson.
+    this.room.delayMs = phase === 'live' && !this.room.status?.replay ? this.delayMs : null;
     this.room.roundTripMs = this.link.clock.roundTripMs;
     this.countFigures(nowMs);
     this.expose(phase);

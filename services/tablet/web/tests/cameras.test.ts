@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { CameraStatus } from '../src/protocol/messages';
-import { boxIsBusy, gettingReady } from '../src/state/cameras';
+import { boxIsBusy, gettingReady, givenUp } from '../src/state/cameras';
 
 const camera = (changes: Partial<CameraStatus>): CameraStatus => ({
   name: 'cam0',
@@ -41,4 +41,9 @@ describe('a busy box', () => {
     expect(boxIsBusy([camera({}), camera({ source_hz: 5 })])).toBe(false);
     expect(boxIsBusy([camera({}), camera({ reason: 'degraded' })])).toBe(false);
   });
+});
+
+it('cameras that are given up are told from those that come back', () => {
+  const lost = (reason: CameraStatus['reason']): CameraStatus => camera({ state: 'lost', reason });
+  expect(givenUp([lost('given_up'), lost('process_gone'), camera({}), lost('given_up')])).toEqual([1, 4]);
 });

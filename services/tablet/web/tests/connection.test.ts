@@ -1,8 +1,9 @@
 import { describe, expect, it } from 'vitest';
 import { BoxClock } from '../src/connection/boxClock';
 import { figureAgeMs, Freshness, STALE_AFTER_MS, underWayMs } from '../src/connection/freshness';
-import { figureInterrupted, phaseOf, type PhaseInputs } from '../src/connection/phase';
+import { makerOf, phaseOf, type PhaseInputs } from '../src/connection/phase';
 import { reconnectDelayMs } from '../src/connection/reconnect';
+import type { ProcessStatus } from '../src/protocol/messages';
 import type { MotionFrame } from '../src/protocol/motionFrame';
 
 function frame(tNewestMs: number, serverLatencyMs = 100): MotionFrame {
@@ -112,9 +113,9 @@ describe('the phase', () => {
     failures: 0,
     hasFigure: true,
     stale: false,
-    interrupted: false,
+    maker: 'works',
     dropping: false,
-    pupil: 'found',
+    nobody: false,
   };
 
   it.each<[string, Partial<PhaseInputs>, string]>([
@@ -122,10 +123,17 @@ describe('the phase', () => {
     ['no connection yet', { connected: false, everConnected: false }, 'connecting'],
     ['several failures', { connected: false, everConnected: false, failures: 3 }, 'offline'],
     ['a connection that broke', { connected: false }, 'offline'],
-    ['no figure yet', { hasFigure: false, stale: true, pupil: 'unknown' }, 'waiting'],
+    ['no figure yet: whether somebody is there is not known', { hasFigure: false, stale: true }, 'searching'],
+    ['no figure, and nobody was found', { hasFigure: false, stale: true, nobody: true }, 'waiting'],
     ['a figure that became old', { stale: true }, 'stale'],
-    ['a fresh figure whose maker has just died', { interrupted: true }, 'stale'],
-    ['a pupil who left', { stale: true, pupil: 'searching' }, 'waiting'],
+    ['a fresh figure whose maker has just died', { maker: 'interrupted' }, 'stale'],
+    ['a maker that is given up', { maker: 'failed' }, 'failed'],
+    [
+      'a maker that is given up before there was a figure',
+      { maker: 'failed', hasFigure: false, stale: true },
+      'failed',
+    ],
+    ['a pupil who left', { stale: true, nobody: true }, 'waiting'],
     ['frames that are all too late', { stale: true, dropping: true }, 'late'],
   ])('with %s', (_name, change, phase) => {
     expect(phaseOf({ ...live, ...change })).toBe(phase);
@@ -133,22 +141,23 @@ describe('the phase', () => {
 });
 
 describe('what makes the figure', () => {
-  const said = (state: 'ok' | 'degraded' | 'gone' | 'silent' | 'failed', name = 'fusion') => ({
+  const said = (state: ProcessStatus['state'], name = 'fusion') => ({
     processes: [{ name, state, reason: '', age_s: 0, cpu_cores: 0, rss_mib: 0, restarts: 0 }],
   });
 
-  it('is missed as soon as the box says that it is gone, hangs or failed', () => {
-    expect((['gone', 'silent', 'failed'] as const).map((state) => figureInterrupted(said(state)))).toEqual([
-      true,
-      true,
-      true,
-    ]);
+  it('is missed as soon as the box says that it is gone or hangs', () => {
+    const states = ['gone', 'silent', 'unknown'] as const;
+    expect(states.map((state) => makerOf(said(state)))).toEqual(['interrupted', 'interrupted', 'interrupted']);
+  });
+
+  it('is given up only if the box says so', () => {
+    expect(makerOf(said('failed'))).toBe('failed');
   });
 
   it('is not missed while it works, before it was heard, or for a camera that is gone', () => {
-    expect(figureInterrupted(null)).toBe(false);
-    expect(figureInterrupted({ processes: [] })).toBe(false);
-    expect(figureInterrupted(said('degraded'))).toBe(false);
-    expect(figureInterrupted(said('gone', 'edge-cam01'))).toBe(false);
+    expect(makerOf(null)).toBe('works');
+    expect(makerOf({ processes: [] })).toBe('works');
+    expect(makerOf(said('degraded'))).toBe('works');
+    expect(makerOf(said('failed', 'edge-cam01'))).toBe('works');
   });
 });

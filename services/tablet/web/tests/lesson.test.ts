@@ -22,3 +22,20 @@ it('a replay is named with its title and day, or with its day alone', () => {
   expect(text.lesson.replay('7b, throwing', noon)).toBe('Replay · 7b, throwing · 22 November 2026');
   expect(text.lesson.replay('', noon)).toBe('Replay · 22 November 2026');
 });
+
+it('what went wrong in a lesson that is played is not told as if it did so now', () => {
+  const { busy, lost, slow } = text.cameras.then;
+  for (const words of [busy, lost([2]), lost([1, 2]), slow([2], false), slow([1, 2], false), slow([1, 2], true)]) {
+    expect(words).toMatch(/ (was|were) /);
+    expect(words).not.toMatch(/ (is|are) /);
+  }
+});
+
+it('a figure that has just stopped is not said to be missing for 0 seconds', () => {
+  expect([null, 0, 1, 2].map(text.staleFor)).toEqual([
+    'No new movement',
+    'No new movement',
+    'No new movement for 1 second',
+    'No new movement for 2 seconds',
+  ]);
+});

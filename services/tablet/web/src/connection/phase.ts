@@ -4,11 +4,16 @@ import type { Status } from '../protocol/messages';
 export type Phase =
   | 'connecting' // no connection yet
   | 'offline' // the connection is gone
-  | 'waiting' // connected; no pupil is seen
+  | 'failed' // what makes the figure failed for good
+  | 'searching' // connected; no figure yet, and whether there is a pupil is not known
+  | 'waiting' // connected; nobody is there
   | 'stale' // a figure is there, and it is old
-  | 'late' // frames come, and all of them too late: the network is too slow
+  | 'late' // frames come, and all of them too late
   | 'unable' // this browser draws nothing in 3D
   | 'live';
+
+/** How what makes the figure is: at work as far as is known, for the moment not, or for good not. */
+export type Maker = 'works' | 'interrupted' | 'failed';
 
 export interface PhaseInputs {
   connected: boolean;
@@ -17,11 +22,12 @@ export interface PhaseInputs {
   /** A figure with at least one seen joint was drawn on this connection. */
   hasFigure: boolean;
   stale: boolean;
-  /** The box says that what makes the figure is gone or hangs: however fresh, no newer one comes. */
-  interrupted: boolean;
+  /** However fresh the figure is, without its maker no newer one comes. */
+  maker: Maker;
   /** Frames were dropped as too late, just now. */
   dropping: boolean;
-  pupil: 'unknown' | 'searching' | 'found';
+  /** The box has looked for a pupil, and there is none. */
+  nobody: boolean;
 }
 
 /** Attempts that may fail before "connecting" becomes "no connection". */
@@ -29,15 +35,17 @@ const PATIENCE = 3;
 
 export function phaseOf(inputs: PhaseInputs): Exclude<Phase, 'unable'> {
   if (!inputs.connected) return inputs.everConnected || inputs.failures >= PATIENCE ? 'offline' : 'connecting';
-  if (inputs.hasFigure && !inputs.stale && !inputs.interrupted) return 'live';
+  if (inputs.maker === 'failed') return 'failed';
+  if (inputs.hasFigure && !inputs.stale && inputs.maker === 'works') return 'live';
   if (inputs.dropping) return 'late';
-  return inputs.hasFigure && inputs.pupil !== 'searching' ? 'stale' : 'waiting';
+  if (inputs.nobody) return 'waiting';
+  return inputs.hasFigure ? 'stale' : 'searching';
 }
 
 const MAKES_THE_FIGURE = 'fusion';
 
-/** The process that makes the figure is known to make none now. */
-export function figureInterrupted(status: Pick<Status, 'processes'> | null): boolean {
-  const maker = status?.processes.find((process) => process.name === MAKES_THE_FIGURE);
-  return maker !== undefined && (maker.state === 'gone' || maker.state === 'silent' || maker.state === 'failed');
+export function makerOf(status: Pick<Status, 'processes'> | null): Maker {
+  const state = status?.processes.find((process) => process.name === MAKES_THE_FIGURE)?.state;
+  if (state === 'failed') return 'failed';
+  return state === 'gone' || state === 'silent' || state === 'unknown' ? 'interrupted' : 'works';
 }

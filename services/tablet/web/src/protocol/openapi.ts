@@ -39,12 +39,12 @@ export interface components {
              * State
              * @enum {string}
              */
-            state: "starting" | "ok" | "slow" | "lost";
+            state: "starting" | "ok" | "slow" | "lost" | "unknown";
             /**
              * Reason
              * @enum {string}
              */
-            reason: "none" | "starting" | "never_seen" | "process_gone" | "silent" | "failed" | "no_frames" | "degraded" | "behind" | "backlog" | "sparse" | "resting";
+            reason: "none" | "starting" | "never_seen" | "unheard" | "given_up" | "process_gone" | "silent" | "failed" | "no_frames" | "degraded" | "behind" | "backlog" | "sparse" | "resting";
             /**
              * Detail
              * @description the process's own words, for the technician
@@ -129,7 +129,7 @@ export interface components {
              * State
              * @enum {string}
              */
-            state: "starting" | "ok" | "degraded" | "failed" | "silent" | "gone";
+            state: "starting" | "ok" | "degraded" | "failed" | "silent" | "gone" | "unknown";
             /** Reason */
             reason: string;
             /** Age S */

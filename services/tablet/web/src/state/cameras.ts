@@ -18,6 +18,11 @@ export function boxIsBusy(cameras: readonly CameraStatus[]): boolean {
   return cameras.length > 0 && cameras.every(slowedByTheBox);
 }
 
+/** Numbers of the cameras, from 1, that the box starts no more. */
+export function givenUp(cameras: readonly CameraStatus[]): number[] {
+  return cameras.flatMap((camera, index) => (camera.reason === 'given_up' ? [index + 1] : []));
+}
+
 function slowedByTheBox(camera: CameraStatus): boolean {
   if (camera.state !== 'slow' || !OF_THE_BOX.has(camera.reason)) return false;
   return camera.source_hz === null || camera.fresh_hz === null || camera.source_hz > SOURCE_MARGIN * camera.fresh_hz;

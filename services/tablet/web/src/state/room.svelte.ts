@@ -1,3 +1,4 @@
+import type { LateCause } from '../connection/lateness';
 import type { Phase } from '../connection/phase';
 import type { Status } from '../protocol/messages';
 import { boxIsBusy } from './cameras';
@@ -6,6 +7,10 @@ import { boxIsBusy } from './cameras';
 export class Room {
   phase = $state<Phase>('connecting');
   status = $state.raw<Status | null>(null);
+  /** Who is to blame where pictures come too late. */
+  lateCause = $state<LateCause>('unknown');
+  /** A lesson is played: nothing is live, and the cameras' states are those of then. */
+  replaying = $derived(this.status?.replay != null);
   /** The page says once that the box is busy, in the place of the same words on every camera. */
   busy = $derived(this.phase === 'live' && boxIsBusy(this.status?.cameras ?? []));
   /** Age of the figure on the screen, in whole seconds; null while there is none. */

@@ -1,5 +1,6 @@
 /** Every word on the page. Another language is another file of this shape. */
 
+import type { LateCause } from '../connection/lateness';
 import type { Phase } from '../connection/phase';
 import type { CameraStatus, MachineCode, ProcessStatus } from '../protocol/messages';
 
@@ -11,6 +12,8 @@ const listed = (numbers: number[]): string =>
 const reasons: Record<CameraStatus['reason'], string> = {
   none: '',
   starting: 'Getting ready',
+  unheard: 'A part of the box stopped, through which it is heard',
+  given_up: 'Stopped too often; the box leaves it off until it is started anew',
   never_seen: 'Not heard from since the box was started',
   process_gone: 'Its program stopped; the box restarts it',
   silent: 'Gives no sign of life',
@@ -30,6 +33,16 @@ const phases: Record<Phase, { pill: string; title: string; words: string }> = {
     title: 'No connection to the box',
     words: 'Trying again. Is the box switched on, and the tablet in its network?',
   },
+  failed: {
+    pill: 'Failed',
+    title: 'The box makes no figure any more',
+    words: 'A part of it stopped too often and is given up. Start the box anew.',
+  },
+  searching: {
+    pill: 'Waiting',
+    title: 'Looking for the pupil',
+    words: 'The figure appears as soon as two cameras see the pupil.',
+  },
   waiting: {
     pill: 'Waiting',
     title: 'Nobody in view',
@@ -38,8 +51,8 @@ const phases: Record<Phase, { pill: string; title: string; words: string }> = {
   stale: { pill: 'Interrupted', title: 'No new movement', words: 'The grey figure is the last that was seen.' },
   late: {
     pill: 'Too slow',
-    title: 'The network is too slow',
-    words: 'Pictures arrive too late to be shown. Move nearer to the access point.',
+    title: 'Pictures arrive too late',
+    words: 'The box, this tablet or the network cannot keep up.',
   },
   unable: {
     pill: 'No picture',
@@ -47,6 +60,20 @@ const phases: Record<Phase, { pill: string; title: string; words: string }> = {
     words: 'Its browser has no WebGL 2. Update it, or use another tablet.',
   },
   live: { pill: 'Live', title: '', words: '' },
+};
+
+/** Who is to blame for pictures that arrive too late to be shown. */
+const late: Record<LateCause, { title: string; words: string }> = {
+  box: { title: 'The box is busy', words: 'It has too much to do, so pictures arrive too late to be shown.' },
+  tablet: {
+    title: 'This tablet is busy',
+    words: 'It has too much to do to show the pictures in time. Close other programs on it.',
+  },
+  network: {
+    title: phases.late.title,
+    words: 'The box and this tablet keep up; the network probably does not. Move nearer to the access point.',
+  },
+  unknown: phases.late,
 };
 
 /** What is wrong with the machine: in the technician's list, and if it matters for the lesson, over the figure. */
@@ -72,7 +99,8 @@ export const text = {
   side: 'State of the room',
   phases,
   gettingReady: { title: 'Cameras are getting ready', words: 'One moment.' },
-  staleFor: (s: number): string => `No new movement for ${seconds(s)}`,
+  late,
+  staleFor: (s: number | null): string => (s ? `No new movement for ${seconds(s)}` : phases.stale.title),
 
   lesson: {
     recording: 'Recording',
@@ -99,8 +127,12 @@ export const text = {
 
   cameras: {
     title: 'Cameras',
+    titleThen: 'Cameras in the lesson',
     name: (index: number): string => `Camera ${index + 1}`,
-    states: { ok: 'Good', slow: 'Slow', lost: 'Lost', starting: 'Starting', unknown: 'Not known' },
+    states: { ok: 'Good', slow: 'Slow', lost: 'Lost', starting: 'Starting', unknown: 'Not known' } satisfies Record<
+      CameraStatus['state'],
+      string
+    >,
     reasons,
     way: (network: string | null): string => ways[network ?? ''] ?? '',
     none: 'Not known without a connection',
@@ -110,10 +142,24 @@ export const text = {
       if (left >= 2) return `${who} – the lesson goes on with ${COUNTS[left] ?? left}`;
       return `${who} – two cameras are needed for a figure`;
     },
+    givenUp: (numbers: number[]): string =>
+      numbers.length === 1
+        ? `Camera ${numbers[0]} does not come back by itself: check it, then start the box anew.`
+        : `Cameras ${listed(numbers)} do not come back by themselves: check them, then start the box anew.`,
     busy: 'The box is busy – fast movement may be missed',
     slow: (slow: number[], all: boolean): string => {
       if (all) return 'All cameras are slow – fast movement may be missed';
       return slow.length === 1 ? `Camera ${slow[0]} is slow` : `Cameras ${listed(slow)} are slow`;
+    },
+    /** The same of a lesson that is played. */
+    then: {
+      lost: (lost: number[]): string =>
+        lost.length === 1 ? `Camera ${lost[0]} was lost here` : `Cameras ${listed(lost)} were lost here`,
+      busy: 'The box was busy here – fast movement may be missing',
+      slow: (slow: number[], all: boolean): string => {
+        if (all) return 'All cameras were slow here – fast movement may be missing';
+        return slow.length === 1 ? `Camera ${slow[0]} was slow here` : `Cameras ${listed(slow)} were slow here`;
+      },
     },
   },
 
@@ -161,6 +207,7 @@ export const text = {
       failed: 'failed',
       silent: 'silent',
       gone: 'gone',
+      unknown: 'not known',
     } satisfies Record<ProcessStatus['state'], string>,
     live: 'Figures a second',
     latency: 'Age of the figure at the server, median / 95 %',
