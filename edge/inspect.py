@@ -40,7 +40,7 @@ def inspect(site: Site | None, rig: Rig | None, data: Path) -> list[Inspected]:
 
 def _networks(data: Path) -> Iterator[Inspected]:
     try:
-        listed = decode_installed((data / FOLDER / FILE_NAME).read_bytes()).networks
+        listed = decode_installed((data / FOLDER / FILE_NAME).read_bytes(), data / FOLDER / FILE_NAME).networks
     except (OSError, UserError):
         # Every network fails alike; the first says why.
         yield _inspected("networks", "reading their list", lambda: read_network_file(NETWORKS[0], data))

@@ -8,7 +8,7 @@ import hashlib
 from pathlib import Path
 
 from models.errors import UserError
-from models.networks.installed import FILE_NAME, FOLDER, decode_installed
+from models.networks.installed import FILE_NAME, FOLDER, decode_installed, remedy
 
 
 def read_network_file(name: str, data: Path) -> bytes:
@@ -18,24 +18,23 @@ def read_network_file(name: str, data: Path) -> bytes:
         UserError: it is not installed, missing, may not be read or is damaged.
     """
     folder = data / FOLDER
-    # Make goes by the list alone.
-    remedy = f"delete {folder / FILE_NAME} and run `make networks`"
+    listed = folder / FILE_NAME
     try:
-        installed = decode_installed((folder / FILE_NAME).read_bytes())
+        installed = decode_installed(listed.read_bytes(), listed)
     except FileNotFoundError as error:
         raise UserError(f"network {name}: there are no networks in {folder}; run `make networks`") from error
     except OSError as error:
-        raise UserError(f"network {name}: {folder / FILE_NAME} cannot be read ({error.strerror}); {remedy}") from error
+        raise UserError(f"network {name}: {listed} cannot be read ({error.strerror}); {remedy(listed)}") from error
     entry = installed.networks.get(name)
     if entry is None:
-        raise UserError(f"network {name}: not in {folder / FILE_NAME}; {remedy}")
+        raise UserError(f"network {name}: not in {listed}; {remedy(listed)}")
     path = folder / entry.file
     try:
         model = path.read_bytes()
     except FileNotFoundError as error:
-        raise UserError(f"network {name}: {path} is missing; {remedy}") from error
+        raise UserError(f"network {name}: {path} is missing; {remedy(listed)}") from error
     except OSError as error:
-        raise UserError(f"network {name}: {path} cannot be read ({error.strerror}); {remedy}") from error
+        raise UserError(f"network {name}: {path} cannot be read ({error.strerror}); {remedy(listed)}") from error
     if hashlib.sha256(model).hexdigest() != entry.sha256:
-        raise UserError(f"network {name}: {path} is damaged ({len(model)} bytes, not the hash installed); {remedy}")
+        raise UserError(f"network {name}: {path} is damaged ({len(model)} bytes, not the hash installed); {remedy(listed)}")
     return model

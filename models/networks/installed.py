@@ -1,5 +1,7 @@
 """The list of converted networks in the data folder: written by the set-up, read by who loads a network. Pure: bytes in and out."""
 
+from pathlib import Path
+
 import msgspec
 
 from models.errors import UserError
@@ -39,16 +41,25 @@ def encode_installed(installed: Installed) -> bytes:
     return msgspec.json.format(msgspec.json.encode(installed), indent=2) + b"\n"
 
 
-def decode_installed(data: bytes) -> Installed:
+def decode_installed(data: bytes, file: Path) -> Installed:
     """Read the list.
+
+    Args:
+        data: the file's bytes.
+        file: its path, for the error.
 
     Raises:
         UserError: damaged, or of another version of KineBox.
     """
     try:
         installed = msgspec.json.decode(data, type=Installed)
-    except (msgspec.ValidationError, msgspec.DecodeError) as error:
-        raise UserError(f"networks/{FILE_NAME} cannot be read ({error}); run `make networks`") from error
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise UserError(f"{file} cannot be read ({error}); {remedy(file)}") from error
     if installed.version != INSTALLED_VERSION:
-        raise UserError(f"networks/{FILE_NAME} is of version {installed.version}, not {INSTALLED_VERSION}; run `make networks`")
+        raise UserError(f"{file} is of version {installed.version}, not {INSTALLED_VERSION}; {remedy(file)}")
     return installed
+
+
+def remedy(file: Path) -> str:
+    """What to do about networks that are harmed, given the path of their list: Make goes by its presence alone."""
+    return f"delete {file} and run `make networks`"

@@ -80,12 +80,17 @@ def _stopped(box: BoxFacts) -> list[Finding]:
     table = dict(box.running.processes)
     if box.running.supervisor is not None:
         table[SUPERVISOR] = [box.running.supervisor]
+    leaderless = any(process.stopped for process in table.get(SUPERVISOR, ()))
     findings = []
     for name, processes in table.items():
         for process in processes:
             if process.stopped:
                 words = f"{name} (process {process.pid}) is stopped and does nothing, by SIGSTOP or a debugger"
-                remedy = f"let it go on (kill -CONT {process.pid}), or end it (kill -9 {process.pid}) and the box starts it anew"
+                remedy = f"let it go on (kill -CONT {process.pid})"
+                if name == SUPERVISOR:
+                    remedy += f", or end the whole box (kill -9 {process.pid}) and start it anew"
+                elif not leaderless:
+                    remedy += f", or end it (kill -9 {process.pid}) and the box starts it anew"
                 findings.append(Finding("fault", name, words, "the machine's table of processes", remedy))
     return findings
 

@@ -97,6 +97,19 @@ def test_a_bus_that_does_not_answer_is_its_router_and_nobody_else_is_blamed() ->
     assert words.startswith("fusion is missing, and with it the bus")
 
 
+def test_nobody_is_told_to_kill_a_supervisor_that_is_stopped_as_if_the_box_outlived_that() -> None:
+    stopped = BoxProcess(7, stopped=True)
+    camera = {"edge-a": [BoxProcess(8, stopped=True)]}
+    found = judge_box(box(running=RunningBox(Path("site.toml"), stopped, camera))).findings
+    remedies = {finding.where: finding.remedy for finding in found}
+    assert remedies["supervisor"] == "let it go on (kill -CONT 7), or end the whole box (kill -9 7) and start it anew"
+    # With its supervisor stopped, nobody starts it anew.
+    assert remedies["edge-a"] == "let it go on (kill -CONT 8)"
+    found = judge_box(box(running=RunningBox(Path("site.toml"), replace(stopped, stopped=False), camera))).findings
+    remedies = {finding.where: finding.remedy for finding in found}
+    assert remedies["edge-a"] == "let it go on (kill -CONT 8), or end it (kill -9 8) and the box starts it anew"
+
+
 def test_a_busy_box_is_told_once_and_not_of_each_camera() -> None:
     slow = [health(f"edge-{n}", camera=CameraHealth(n, 30.0, 2.0, 5.0, 0, 20.0, "lightning", {})) for n in "ab"]
     (words,) = whats(judge_box(box(*slow)))

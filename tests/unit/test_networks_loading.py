@@ -75,7 +75,7 @@ def test_a_damaged_network_is_never_opened(data: Path, damage: str) -> None:
 
 def test_a_damaged_list_says_what_to_do(data: Path) -> None:
     (data / "networks" / "installed.json").write_text("{")
-    with pytest.raises(UserError, match=r"installed\.json cannot be read .*run `make networks`"):
+    with pytest.raises(UserError, match=r"installed\.json cannot be read .*; delete .*/installed\.json and run `make networks`"):
         load_network("toy", data)
 
 

@@ -49,10 +49,10 @@ def test_a_wrong_entry_is_one_line_that_names_it(old: str, new: str, named: str)
 
 def test_the_list_of_installed_networks_survives_a_round_trip() -> None:
     installed = Installed(INSTALLED_VERSION, {"toy": InstalledNetwork("toy.onnx", "ab" * 32, "cd" * 32, {"toy.json": "ef" * 32})})
-    assert decode_installed(encode_installed(installed)) == installed
+    assert decode_installed(encode_installed(installed), Path("installed.json")) == installed
 
 
 @pytest.mark.parametrize("data", [b"", b"{", b'{"version": 1}', b'{"version": 99, "networks": {}}'])
 def test_a_damaged_list_of_installed_networks_says_what_to_do(data: bytes) -> None:
-    with pytest.raises(UserError, match="make networks"):
-        decode_installed(data)
+    with pytest.raises(UserError, match=r"; delete data/installed\.json and run `make networks`$"):
+        decode_installed(data, Path("data/installed.json"))

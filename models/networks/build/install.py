@@ -70,7 +70,7 @@ def sources_folder(data: Path) -> Path:
 
 def _known(path: Path) -> Mapping[str, InstalledNetwork]:
     try:
-        return decode_installed(path.read_bytes()).networks
+        return decode_installed(path.read_bytes(), path).networks
     except (FileNotFoundError, UserError):
         return {}  # nothing installed, or nothing that can be trusted: everything is lacking
 
