@@ -1,12 +1,14 @@
 """The record of a lesson: what fusion consumed, in its order, and who asks for it.
 
-A lesson replays only from a state that is known, and that is fusion's first one. So a recorder that begins, or that has missed
-something, asks fusion to begin anew; from then on fusion publishes everything that it takes in, in its order, as one *segment*.
-The figure is grey for a moment then, as at the start of the box: fusion has to find the pupil again.
+A lesson replays only from a state that is known, and that is fusion's first one. So a recorder that begins asks fusion to begin
+anew; from then on fusion publishes everything that it takes in, in its order, as one *segment*. The figure is grey for a moment
+then, as at the start of the box: fusion has to find the pupil again.
 
-The recorder repeats its request for as long as it records. A repeated request keeps the log running and begins nothing, so it
-does not matter how many of them are lost; a fusion process that was restarted, or has stopped the log, does not know the
-request and begins a segment by it. The recorder takes every part whose `segment_ns` is later than its request's `t_ns`.
+The recorder repeats its request for as long as it records, and says in it which part it needs next. A repeated request keeps the
+log running and begins nothing, so it does not matter how many of them are lost. Parts that the recorder has missed, because it
+died or was held up, are published once more: fusion keeps those of the last `LEASE_NS`. A fusion process that was restarted, has
+stopped the log, or does not have the part any more begins a new segment. The recorder takes the segment that it is in, and
+every one that begins after it asked.
 """
 
 from typing import Literal
@@ -21,8 +23,9 @@ EntryKind = Literal["observation", "tick", "motion", "health"]
 "observation" and "tick" are fusion's input; "motion" (smooth) is its output; "health" is what a process said.
 """
 MAX_TITLE = 80
-LEASE_NS = 10_000_000_000
-"""Fusion stops the log when the request was not repeated for so long: the recorder is gone, or does not record any more."""
+LEASE_NS = 20_000_000_000
+"""Fusion stops the log when the request was not repeated for so long: the recorder is gone, or does not record any more. One that
+hangs is found after 3 s, and needs a few more to be back."""
 
 
 class Entry(msgspec.Struct, frozen=True, array_like=True):
@@ -67,16 +70,22 @@ class FusionLog(msgspec.Struct, frozen=True):
 
 
 class SegmentRequest(msgspec.Struct, frozen=True):
-    """Begin with a new state, and log from there (recorder -> fusion).
+    """Go on with the log, or begin with a new state and log from there (recorder -> fusion).
 
-    `t_ns`: CLOCK_MONOTONIC when it was asked first; names the request, which is repeated unchanged. Of two requests the later one
-    counts.
+    Attributes:
+        t_ns: CLOCK_MONOTONIC when it was asked first; names the request. Of two requests the later one counts.
+        segment_ns: the segment to go on with; 0 for a new one.
+        sequence: the part of it that is needed next.
     """
 
     t_ns: int
+    segment_ns: int = 0
+    sequence: int = 0
 
     def __post_init__(self) -> None:
         require_count("t_ns", self.t_ns)
+        require_count("segment_ns", self.segment_ns)
+        require_count("sequence", self.sequence)
 
 
 class LessonRequest(msgspec.Struct, frozen=True):

@@ -1,11 +1,36 @@
 """The log of what fusion takes in and gives out, in its order, for as long as somebody asks for it (`models.messages.lesson`)."""
 
+from collections import deque
+from typing import NamedTuple
+
 from models.messages.lesson import LEASE_NS, Entry, EntryKind, FusionLog, SegmentRequest
 
 PART_NS = 500_000_000
 """Length of a part. What fusion has not published when it dies is lost."""
 MAX_PART_BYTES = 1 << 20
 """A part that has reached this is published early, at the next tick; it is larger by what came in since the last one."""
+MAX_KEPT_BYTES = 16 << 20
+"""Of parts that were given out already; several times what eight cameras make in `LEASE_NS`."""
+IN_FLIGHT_NS = 1_000_000_000
+"""So long the newest part may take to reach the recorder; before that it is not missed."""
+
+
+class Answer(NamedTuple):
+    """What a request brings about.
+
+    Attributes:
+        begins: a segment begins, for which fusion needs a new state.
+        again: parts to be published once more, in this order.
+    """
+
+    begins: bool = False
+    again: tuple[FusionLog, ...] = ()
+
+
+class _Kept(NamedTuple):
+    part: FusionLog
+    t_ns: int
+    size: int
 
 
 class SegmentLog:
@@ -19,26 +44,32 @@ class SegmentLog:
         self._part_ns = 0
         self._bytes = 0
         self._entries: list[Entry] = []
+        self._kept: deque[_Kept] = deque()
 
     @property
     def running(self) -> bool:
         """Whether entries are collected."""
         return self._request_ns > 0
 
-    def ask(self, request: SegmentRequest, now_ns: int) -> bool:
-        """A request was heard at `now_ns`; True if a segment begins by it, for which fusion needs a new state.
+    def ask(self, request: SegmentRequest, now_ns: int) -> Answer:
+        """A request was heard at `now_ns`.
 
-        A request from the future is damaged, and would shut out every later one.
+        A request from the future, or for a part of the future, is damaged, and would shut out every later one.
         """
-        if request.t_ns > now_ns:
-            return False
+        goes_on = self.running and request.segment_ns == self._segment_ns
+        if request.t_ns > now_ns or (goes_on and request.sequence > self._sequence):
+            return Answer()
         self._asked_ns = now_ns
-        if request.t_ns <= self._request_ns:
-            return False
+        if goes_on and request.sequence >= self._sequence - len(self._kept):
+            self._request_ns = max(self._request_ns, request.t_ns)
+            return Answer(again=self._missed(request.sequence, now_ns))
+        if request.t_ns <= self._request_ns and request.segment_ns < self._segment_ns:
+            return Answer()  # A repetition: its segment has begun, of which the recorder had not heard yet.
         self._request_ns = request.t_ns
         self._segment_ns, self._sequence = now_ns, 0
+        self._kept.clear()
         self._begin_part(now_ns)
-        return True
+        return Answer(begins=True)
 
     def add(self, kind: EntryKind, t_ns: int, payload: bytes = b"") -> None:
         """Something was taken in or given out."""
@@ -51,11 +82,26 @@ class SegmentLog:
         if not self.running or (now_ns - self._part_ns < PART_NS and self._bytes < MAX_PART_BYTES):
             return None
         part = FusionLog(self._segment_ns, self._sequence, tuple(self._entries))
+        self._keep(_Kept(part, now_ns, self._bytes))
         self._sequence += 1
         self._begin_part(now_ns)
         if now_ns - self._asked_ns > LEASE_NS:
             self._request_ns = 0
+            self._kept.clear()
         return part
+
+    def _keep(self, newest: _Kept) -> None:
+        self._kept.append(newest)
+        size = sum(kept.size for kept in self._kept)
+        while newest.t_ns - self._kept[0].t_ns > LEASE_NS or size > MAX_KEPT_BYTES:
+            size -= self._kept.popleft().size
+
+    def _missed(self, sequence: int, now_ns: int) -> tuple[FusionLog, ...]:
+        """The parts from `sequence` on, if the recorder must have missed one of them."""
+        parts = [kept for kept in self._kept if kept.part.sequence >= sequence]
+        if len(parts) <= 1 and all(now_ns - kept.t_ns < IN_FLIGHT_NS for kept in parts):
+            return ()
+        return tuple(kept.part for kept in parts)
 
     def _begin_part(self, now_ns: int) -> None:
         self._part_ns = now_ns

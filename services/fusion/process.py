@@ -134,7 +134,7 @@ class FusionLoop:
                 self._step(observation)
                 return
             if delivery.topic == topics.segment_request():
-                self._begin_segment(codec.decode(delivery.payload, SegmentRequest), now_ns)
+                self._answer(codec.decode(delivery.payload, SegmentRequest), now_ns)
                 return
             camera = read_health(delivery.topic, delivery.payload).camera
             self._log.add("health", now_ns, delivery.payload)
@@ -146,9 +146,12 @@ class FusionLoop:
         if camera is not None and camera.camera in self._names:
             self._cameras[camera.camera] = (now_ns, camera)
 
-    def _begin_segment(self, request: SegmentRequest, now_ns: int) -> None:
-        """Forget everything if a lesson is to begin here: it can be replayed only from a state that is known."""
-        if self._log.ask(request, now_ns):
+    def _answer(self, request: SegmentRequest, now_ns: int) -> None:
+        """Publish what the recorder has missed; forget all if a segment begins: it must be replayed from a known state."""
+        answer = self._log.ask(request, now_ns)
+        for part in answer.again:
+            self._bus.publish(topics.fusion_log(), codec.encode(part))
+        if answer.begins:
             self._state = initial_state(self._context.rig)
             self._second.ignored_before = {}
             self._searching = {}

@@ -1,7 +1,7 @@
-"""Following fusion's log: which parts belong to the lesson, what is missing between them, and when to ask fusion to begin anew.
+"""Following fusion's log: which parts belong to the lesson, what is missing between them, and what fusion is asked for.
 
-Pure: what is heard and the time go in. A lesson's segments are whole from their first part on; when a part is lost the rest of the
-segment could not be replayed, so it is left out and a new segment is asked for.
+Pure: what is heard goes in. A lesson's segments are whole from their first part on. A part that did not come is asked for again,
+and until it is there no later one is taken; if fusion does not have it any more it begins a new segment, and there is a gap.
 """
 
 from dataclasses import dataclass
@@ -21,37 +21,31 @@ class Following:
     """What is expected of fusion's log.
 
     Attributes:
-        request: what fusion is asked for, again and again.
+        asked_ns: CLOCK_MONOTONIC when this began; only segments that begin later are taken, or the one that is gone on with.
         gap: why something will be missing before the next segment; empty if nothing is recorded yet.
-        segment_ns: of the segment that is being recorded; None between segments.
+        segment_ns: of the segment that is being recorded; 0 before the first.
         sequence: of its next part.
     """
 
-    request: SegmentRequest
+    asked_ns: int
     gap: str = ""
-    segment_ns: int | None = None
+    segment_ns: int = 0
     sequence: int = 0
 
-    def hear(self, part: FusionLog, now_ns: int) -> Accepted | None:
-        """A part was heard; None if it does not belong into the lesson."""
-        if part.segment_ns <= self.request.t_ns:
-            return None  # Of a segment that began before it was asked for: its beginning was not heard.
-        if part.segment_ns == self.segment_ns and part.sequence < self.sequence:
-            return None
-        began_anew = part.segment_ns != self.segment_ns
-        if part.sequence != (0 if began_anew else self.sequence):
-            self.ask_anew("a part of fusion's log was lost", now_ns)
-            return None
-        gap = ""
-        if began_anew:
-            gap = self.gap
-            self.gap = "fusion began anew"
-        self.segment_ns, self.sequence = part.segment_ns, part.sequence + 1
-        return Accepted(gap)
+    @property
+    def request(self) -> SegmentRequest:
+        """What fusion is asked for, again and again."""
+        return SegmentRequest(self.asked_ns, self.segment_ns, self.sequence)
 
-    def ask_anew(self, gap: str, now_ns: int) -> None:
-        """Ask for a new segment, because of a gap."""
-        self.request = SegmentRequest(now_ns)
-        if self.gap:
-            self.gap = gap
-        self.segment_ns, self.sequence = None, 0
+    def hear(self, part: FusionLog) -> Accepted | None:
+        """A part was heard; None if it does not belong into the lesson, or not yet."""
+        if part.segment_ns != self.segment_ns:
+            if part.segment_ns <= max(self.asked_ns, self.segment_ns):
+                return None
+            self.segment_ns, self.sequence = part.segment_ns, 0
+        if part.sequence != self.sequence:
+            return None
+        gap = self.gap if part.sequence == 0 else ""
+        self.gap = "fusion began anew"
+        self.sequence += 1
+        return Accepted(gap)

@@ -60,6 +60,7 @@ class Contents:
         gaps: parts before which something is missing.
         segments: stretches that replay in one go.
         segment_ns: the name of the last one; 0 before the first.
+        next_part: number of the part that it goes on with.
     """
 
     end: int = 0
@@ -72,6 +73,7 @@ class Contents:
     gaps: int = 0
     segments: int = 0
     segment_ns: int = 0
+    next_part: int = 0
 
     @property
     def seconds(self) -> float:
@@ -99,7 +101,7 @@ class Contents:
         self.log_time_ns = messages[-1].log_time
         self.gaps += bool(mark.gap)
         self.segments += mark.segment_ns != self.segment_ns
-        self.segment_ns = mark.segment_ns
+        self.segment_ns, self.next_part = mark.segment_ns, mark.sequence + 1
 
 
 class LessonWriter:
@@ -158,6 +160,11 @@ class LessonWriter:
     def segments(self) -> int:
         """Stretches that replay in one go."""
         return self._contents.segments
+
+    @property
+    def position(self) -> tuple[int, int]:
+        """The segment that it is in, 0 before the first, and the part of it that comes next."""
+        return self._contents.segment_ns, self._contents.next_part
 
     @property
     def size(self) -> int:

@@ -1,7 +1,8 @@
 """The recorder without its bus: lessons begin and end, parts of fusion's log are written, trouble is told.
 
 A lesson ends when a person says so, when the box ends, and when the disk is full or broken: then it is finished as well as it can
-be, and the box goes on. A lesson that was cut short by the recorder's own death is gone on with, after a gap.
+be, and the box goes on. A lesson that was cut short by the recorder's own death is gone on with, without a gap as long as fusion
+still has what was missed.
 """
 
 import datetime as dt
@@ -108,7 +109,7 @@ class Recorder:
             # It would date everything that comes after it, since times in a file never go back.
             log.warning("part of fusion's log from the future left out", lesson=_name(running.writer), sequence=part.sequence)
             return
-        accepted = running.following.hear(part, now_ns)
+        accepted = running.following.hear(part)
         if accepted is None:
             return
         running.heard_ns = now_ns
@@ -159,7 +160,7 @@ class Recorder:
 
     def _begin(self, writer: LessonWriter, gap: str = "") -> None:
         now_ns = self._clock_ns()
-        self._running = _Running(writer, Following(SegmentRequest(now_ns), gap), heard_ns=now_ns)
+        self._running = _Running(writer, Following(now_ns, gap, *writer.position), heard_ns=now_ns)
 
     def _finish(self, why: str = "", remedy: str = "") -> None:
         """End the lesson; `why` it had to end, if nobody wished it, and what to do."""

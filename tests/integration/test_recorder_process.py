@@ -167,25 +167,22 @@ def test_a_lesson_is_recorded_on_request_and_replays_to_the_last_bit(box: Box) -
     box.require_replay(lesson, segments=1)
 
 
-def test_kill_9_loses_at_most_a_second_and_the_lesson_goes_on_after_the_restart(box: Box) -> None:
+def test_kill_9_of_the_recorder_loses_nothing_that_fusion_logged_and_the_lesson_goes_on_after_the_restart(box: Box) -> None:
     with box.recorder() as process:
         box.wish("start", "killed")
         safe = box.wait_recorded(process.pid, parts=6)
         process.kill()
         process.wait()
     box.listen(0.0)
-    heard = len(box.heard)
     with box.recorder() as again:
         after = box.wait_recorded(again.pid, parts=round(safe.recorded_s * PARTS_A_SECOND) + 6)
-        assert (after.lesson, after.title, after.gaps) == (safe.lesson, "killed", 1)
+        assert (after.lesson, after.title, after.gaps) == (safe.lesson, "killed", 0)
         again.send_signal(signal.SIGTERM)
         assert again.wait(30.0) == 0
     parts = box.parts(safe.lesson)
-    first = [part for part in parts if part.segment_ns == parts[0].segment_ns]
-    assert len(first) >= heard - PARTS_A_SECOND
-    assert first[-1].entries[-1].t_ns - first[0].entries[0].t_ns >= (safe.recorded_s - 0.1) * 1e9, "less is there than was said"
-    assert [part.gap for part in parts if part.gap] == ["the recorder was started again"]
-    box.require_replay(safe.lesson, segments=2)
+    assert [part.sequence for part in parts] == list(range(len(parts)))
+    assert not [part.gap for part in parts if part.gap]
+    box.require_replay(safe.lesson, segments=1)
 
 
 def test_after_a_crash_of_the_whole_box_the_lesson_is_completed_at_the_next_start(box: Box) -> None:

@@ -38,9 +38,14 @@ class Room:
     def record(self, parts: int) -> None:
         request = self.recorder.look_after()
         assert request is not None
-        for k in range(parts):
+        for k in range(request.sequence, request.sequence + parts):
             self.now_ns += SECOND_NS // 2
-            self.recorder.take(part(request.t_ns + 1, k))
+            self.recorder.take(part(request.segment_ns or request.t_ns + 1, k))
+
+    def fusion_begins_anew(self) -> None:
+        segment_ns = self.now_ns + 1
+        self.now_ns += SECOND_NS
+        self.recorder.take(part(segment_ns, 0))
 
     def files(self, suffix: str) -> list[str]:
         return sorted(path.name for path in self.folder.iterdir() if path.name.endswith(suffix))
@@ -103,22 +108,23 @@ def test_the_same_request_is_repeated_so_that_fusion_goes_on(room: Room) -> None
     room.recorder.start("one")
     room.record(parts=2)
     room.now_ns += 5 * SECOND_NS
-    assert room.recorder.look_after() == SegmentRequest(BEGIN_NS)
+    assert room.recorder.look_after() == SegmentRequest(BEGIN_NS, BEGIN_NS + 1, 2)
 
 
-def test_a_lost_part_is_a_gap_in_the_file_and_a_new_segment_is_asked_for(room: Room) -> None:
+def test_a_lost_part_is_asked_for_and_a_gap_in_the_file_only_if_fusion_does_not_have_it_any_more(room: Room) -> None:
     room.recorder.start("one")
     room.record(parts=2)
     room.now_ns += SECOND_NS
     room.recorder.take(part(BEGIN_NS + 1, 3))
-    request = room.recorder.look_after()
-    assert request == SegmentRequest(room.now_ns)
-    room.record(parts=1)
+    room.record(parts=2)
+    assert room.recorder.health().gaps == 0
+    room.recorder.take(part(BEGIN_NS + 1, 5))
+    room.fusion_begins_anew()
     assert room.recorder.health().gaps == 1
     room.recorder.stop()
     (name,) = room.files(SUFFIX)
     with open_lesson(room.folder / name) as lesson:
-        assert [item.gap for item in lesson.parts()] == ["", "", "a part of fusion's log was lost"]
+        assert [item.gap for item in lesson.parts()] == ["", "", "", "", "fusion began anew"]
 
 
 @pytest.mark.parametrize("wrong", ["an entry's time", "the segment's name"])
@@ -207,7 +213,8 @@ def test_a_folder_that_cannot_be_written_to_is_named(room: Room, monkeypatch: py
     assert room.recorder.health().lesson == ""
 
 
-def test_a_lesson_that_the_recorders_death_cut_short_is_gone_on_with(room: Room) -> None:
+@pytest.mark.parametrize("kept", [True, False])
+def test_a_lesson_that_the_recorders_death_cut_short_is_gone_on_with(room: Room, kept: bool) -> None:
     room.recorder.start("one")
     room.record(parts=2)
     name = room.recorder.health().lesson
@@ -217,12 +224,15 @@ def test_a_lesson_that_the_recorders_death_cut_short_is_gone_on_with(room: Room)
     room.now_ns += 3 * SECOND_NS
     room.recorder = room.started(recover(room.folder, header().run_ns))
     assert room.recorder.health().lesson == name
-    assert room.recorder.look_after() == SegmentRequest(room.now_ns)
-    room.record(parts=2)
-    assert room.recorder.health().gaps == 1
+    assert room.recorder.look_after() == SegmentRequest(room.now_ns, BEGIN_NS + 1, 2)
+    if kept:
+        room.record(parts=2)
+    else:
+        room.fusion_begins_anew()
     room.recorder.close()
+    gaps = ["", "", "", ""] if kept else ["", "", "the recorder was started again"]
     with open_lesson(room.folder / f"{name}{SUFFIX}") as lesson:
-        assert [item.gap for item in lesson.parts()] == ["", "", "the recorder was started again", ""]
+        assert [item.gap for item in lesson.parts()] == gaps
 
 
 def test_an_automatic_recorder_begins_by_itself_and_stops_for_good_when_told_to(automatic_room: Room) -> None:

@@ -1,7 +1,7 @@
 """Fusion's log: who gets it, when a segment begins, and when it ends."""
 
 from models.messages.lesson import LEASE_NS, Entry, SegmentRequest
-from services.fusion.log import MAX_PART_BYTES, PART_NS, SegmentLog
+from services.fusion.log import IN_FLIGHT_NS, MAX_KEPT_BYTES, MAX_PART_BYTES, PART_NS, Answer, SegmentLog
 
 NOW_NS = 10**12
 
@@ -14,7 +14,7 @@ def test_nothing_is_kept_before_somebody_asks() -> None:
 
 def test_parts_come_twice_a_second_numbered_and_in_order() -> None:
     log = SegmentLog()
-    assert log.ask(SegmentRequest(NOW_NS - 5), NOW_NS)
+    assert log.ask(SegmentRequest(NOW_NS - 5), NOW_NS).begins
     log.add("observation", NOW_NS + 1, b"seen")
     log.add("tick", NOW_NS)
     assert log.part(NOW_NS + PART_NS - 1) is None
@@ -30,11 +30,11 @@ def test_parts_come_twice_a_second_numbered_and_in_order() -> None:
 def test_a_repeated_request_begins_nothing_and_a_later_one_does() -> None:
     log = SegmentLog()
     request = SegmentRequest(NOW_NS)
-    assert log.ask(request, NOW_NS)
+    assert log.ask(request, NOW_NS).begins
     log.add("tick", NOW_NS)
-    assert not log.ask(request, NOW_NS + 1)
-    assert not log.ask(SegmentRequest(NOW_NS - 1), NOW_NS + 2)
-    assert log.ask(SegmentRequest(NOW_NS + 3), NOW_NS + 3)
+    assert log.ask(request, NOW_NS + 1) == Answer()
+    assert log.ask(SegmentRequest(NOW_NS - 1), NOW_NS + 2) == Answer()
+    assert log.ask(SegmentRequest(NOW_NS + 3), NOW_NS + 3).begins
     part = log.part(NOW_NS + 3 + PART_NS)
     assert part is not None
     assert (part.segment_ns, part.sequence, part.entries) == (NOW_NS + 3, 0, ())
@@ -47,7 +47,7 @@ def test_the_log_stops_when_the_recorder_is_gone_and_its_request_begins_anew_whe
     assert log.part(NOW_NS + LEASE_NS + 1) is not None
     assert not log.running
     assert log.part(NOW_NS + 2 * LEASE_NS) is None
-    assert log.ask(request, NOW_NS + 2 * LEASE_NS)
+    assert log.ask(request, NOW_NS + 2 * LEASE_NS).begins
 
 
 def test_a_request_that_is_repeated_in_time_keeps_the_log_running() -> None:
@@ -61,8 +61,9 @@ def test_a_request_that_is_repeated_in_time_keeps_the_log_running() -> None:
 
 def test_a_damaged_request_from_the_future_does_not_shut_out_the_real_one() -> None:
     log = SegmentLog()
-    assert not log.ask(SegmentRequest(2**62), NOW_NS)
-    assert log.ask(SegmentRequest(NOW_NS), NOW_NS)
+    assert log.ask(SegmentRequest(2**62), NOW_NS) == Answer()
+    assert log.ask(SegmentRequest(NOW_NS), NOW_NS).begins
+    assert log.ask(SegmentRequest(NOW_NS, NOW_NS, 10**6), NOW_NS) == Answer()
 
 
 def test_a_flood_is_published_early_instead_of_kept() -> None:
@@ -70,3 +71,57 @@ def test_a_flood_is_published_early_instead_of_kept() -> None:
     log.ask(SegmentRequest(NOW_NS), NOW_NS)
     log.add("observation", NOW_NS, bytes(MAX_PART_BYTES))
     assert log.part(NOW_NS + 1) is not None
+
+
+def running_log(parts: int) -> SegmentLog:
+    """A log that has just given out so many parts; its recorder is there."""
+    log = SegmentLog()
+    log.ask(SegmentRequest(NOW_NS), NOW_NS)
+    for number in range(1, parts + 1):
+        log.add("tick", NOW_NS + number)
+        assert log.part(NOW_NS + number * PART_NS) is not None
+        log.ask(SegmentRequest(NOW_NS, NOW_NS, number), NOW_NS + number * PART_NS)
+    return log
+
+
+def test_a_recorder_that_comes_back_gets_what_it_missed_and_fusion_keeps_its_state() -> None:
+    log = running_log(8)
+    answer = log.ask(SegmentRequest(NOW_NS + 7 * PART_NS, NOW_NS, 3), NOW_NS + 8 * PART_NS)
+    assert not answer.begins
+    assert [part.sequence for part in answer.again] == [3, 4, 5, 6, 7]
+    assert [part.entries[0].t_ns for part in answer.again] == [NOW_NS + number for number in (4, 5, 6, 7, 8)]
+
+
+def test_a_part_that_is_under_way_is_not_sent_twice_but_a_lost_one_is() -> None:
+    log = running_log(4)
+    request = SegmentRequest(NOW_NS, NOW_NS, 3)
+    assert log.ask(request, NOW_NS + 4 * PART_NS + 1) == Answer()
+    assert [part.sequence for part in log.ask(request, NOW_NS + 4 * PART_NS + IN_FLIGHT_NS).again] == [3]
+
+
+def test_a_part_that_is_not_kept_any_more_makes_a_new_segment() -> None:
+    log = running_log(2 * LEASE_NS // PART_NS)
+    now_ns = NOW_NS + 2 * LEASE_NS
+    assert log.ask(SegmentRequest(NOW_NS, NOW_NS, 0), now_ns).begins
+    assert log.ask(SegmentRequest(NOW_NS, NOW_NS, 0), now_ns + 1) == Answer()
+    part = log.part(now_ns + PART_NS)
+    assert part is not None
+    assert (part.segment_ns, part.sequence) == (now_ns, 0)
+
+
+def test_a_request_for_a_segment_that_fusion_never_had_begins_one() -> None:
+    log = running_log(4)
+    now_ns = NOW_NS + 4 * PART_NS
+    assert log.ask(SegmentRequest(NOW_NS, now_ns - 1, 0), now_ns).begins
+
+
+def test_what_is_kept_is_bounded_in_bytes() -> None:
+    log = SegmentLog()
+    log.ask(SegmentRequest(NOW_NS), NOW_NS)
+    parts = 2 * MAX_KEPT_BYTES // MAX_PART_BYTES
+    for number in range(parts):
+        log.add("observation", NOW_NS, bytes(MAX_PART_BYTES))
+        assert log.part(NOW_NS + number) is not None
+    kept = log.ask(SegmentRequest(NOW_NS, NOW_NS, parts // 2), NOW_NS + parts).again
+    assert sum(len(entry.payload) for part in kept for entry in part.entries) <= MAX_KEPT_BYTES
+    assert log.ask(SegmentRequest(NOW_NS, NOW_NS, 0), NOW_NS + parts).begins
