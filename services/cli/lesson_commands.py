@@ -90,6 +90,7 @@ def lessons_list(
     if context.invoked_subcommand is None:
         from services.cli import lessons  # noqa: PLC0415
 
+        lessons.require_data(data)
         lessons.listed(lessons.folder_of(data, site), json=json)
 
 

@@ -20,9 +20,15 @@ _PIPE_WIDTH = 200
 
 
 def folder_of(data: Path, site: Path | None) -> Path:
-    """Where lessons are kept: as the site file says, or where they are if it does not; UserError if that cannot be read."""
+    """Where lessons are kept, from the root: as the site file says, or by default; UserError if that cannot be read."""
     config = LessonsConfig() if site is None else read_site(site)[0].lessons
-    return data / config.folder
+    return (data / config.folder).resolve()
+
+
+def require_data(data: Path) -> None:
+    """Raise UserError if there is no data folder: an empty list would be no answer."""
+    if not data.is_dir():
+        raise UserError(f"there is no data folder {data.resolve()}; name the box's with --data")
 
 
 def listed(folder: Path, *, json: bool) -> None:

@@ -37,6 +37,8 @@ def show(data: Path, query: Query, most: int, *, json: bool, follow: bool, repla
     with suppress(KeyboardInterrupt), _readable_log(folder):
         lines, reader = last_lines(folder, query, most, torn=not follow)
         _print(lines, json=json)
+        if most and not lines and not follow:
+            sys.stderr.write(f"no line of the log in {folder} matches\n")
         while follow:
             time.sleep(_LOOK_AGAIN_S)
             _print(query.select(reader.poll()), json=json)

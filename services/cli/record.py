@@ -103,7 +103,7 @@ def _recorded(lesson: str, last: RecorderHealth | None, site: Site, data: Path) 
     """What became of a lesson, and where it is."""
     length = f", {clock(last.recorded_s)}" if last is not None else ""
     gaps = f", {_gaps(last.gaps)}" if last is not None and last.gaps else ""
-    return f"recorded {data / site.lessons.folder / (lesson + SUFFIX)}{length}{gaps}"
+    return f"recorded {(data / site.lessons.folder / (lesson + SUFFIX)).resolve()}{length}{gaps}"
 
 
 def _gaps(count: int) -> str:

@@ -1,12 +1,16 @@
 """Which lines of the log are wanted."""
 
 import datetime as dt
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from services.logs.readable import details, printable
 from services.logs.reader import Line
-from services.logs.record import LEVELS
+from services.logs.record import LEVELS, LogRecord
+
+_SUPERVISOR = "supervisor"
+_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 
 
 @dataclass(frozen=True)
@@ -18,7 +22,7 @@ class Query:
     Attributes:
         since: aware; lines from then on.
         level: one of `LEVELS`; lines of it and of worse ones.
-        processes: names; "edge" is every camera's process.
+        processes: names; "edge" is every camera's process. What the supervisor said of a process is about that, too.
         text: to be found, in any case, in the event, in a field as `name=value` or in the traceback.
     """
 
@@ -34,13 +38,19 @@ class Query:
             record = line.record
             if record is not None:
                 is_late_enough = self.since is None or record.time >= self.since
-                if LEVELS.index(record.level) < LEVELS.index(self.level) or not self._is_of_process(record.process):
+                if LEVELS.index(record.level) < LEVELS.index(self.level) or not self._is_of_process(record):
                     continue
             if is_late_enough and self._has_text(line):
                 yield line
 
-    def _is_of_process(self, name: str) -> bool:
-        return not self.processes or any(name == wanted or name.startswith(f"{wanted}-") for wanted in self.processes)
+    def _is_of_process(self, record: LogRecord) -> bool:
+        if not self.processes:
+            return True
+        names = [record.process]
+        if record.process == _SUPERVISOR:
+            # A process that was killed or never came says nothing itself.
+            names += _NAME.findall(record.event)
+        return any(name == wanted or name.startswith(f"{wanted}-") for name in names for wanted in self.processes)
 
     def _has_text(self, line: Line) -> bool:
         if not self.text:

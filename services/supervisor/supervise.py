@@ -14,7 +14,7 @@ from threading import Event
 from models.camera.rig import Rig
 from models.config.site import Site
 from models.errors import USER_ERROR_CODE, UserError
-from models.messages.health import SupervisorHealth
+from models.messages.health import State, SupervisorHealth
 from models.messages.trouble import Trouble
 from models.process import EDGE, RECORDER, REPLAY, ROUTER, Check, Playback
 from services.logs.files import STARTED, log_folder
@@ -35,6 +35,7 @@ from services.support.version import kinebox_version
 TICK_S = 0.1
 HELD_UP_S = 0.5
 """If a tick took longer than this, the supervisor itself was held up and nobody else is to blame."""
+_LEVELS: dict[State, str] = {"starting": "info", "ok": "info", "degraded": "warning", "failed": "error"}
 END_WITHIN_S = 5.0
 """Longer than an inference takes on a box under load: whoever can end cleanly shall."""
 
@@ -129,6 +130,7 @@ class Supervisor:
             self._wait(TICK_S)
             now_s = time.monotonic()
             held_up, before_s = now_s - before_s > HELD_UP_S, now_s
+            self._stand_in(link, now_s)
             self._hear(link, now_s)
             self._start_others(link, now_s)
             if held_up:
@@ -206,6 +208,14 @@ class Supervisor:
         for line in child.lines():
             self._journal.child_said(post.name, line)
 
+    def _stand_in(self, link: BusLink, now_s: float) -> None:
+        """Once the router is given up, have everybody heard through us."""
+        router = self._posts[0]
+        if router.given_up:
+            link.route()
+            if link.routes:
+                self._silence.hear(router.name, now_s)
+
     def _hear(self, link: BusLink, now_s: float) -> None:
         posts = {post.name: post for post in self._posts}
         for name, beat in link.beats():
@@ -222,7 +232,8 @@ class Supervisor:
             else:
                 self._runs(post, now_s)
             if post.reports(health.state, now_s):
-                self._journal.say(f"{post.name} is {health.state}{': ' if health.reason else ''}{health.reason}")
+                why = f": {health.reason}" if health.reason else ""
+                self._journal.say(f"{post.name} is {health.state}{why}", level=_LEVELS[health.state])
 
     def _runs(self, post: Post, now_s: float) -> None:
         self._silence.hear(post.name, now_s)

@@ -1,8 +1,8 @@
 """Parts of a box that cost nothing: they report their health and do as a file in the data folder tells them when they start.
 
 `data/orders/NAME` holds one word: "crash", "hang" (reports no more once there is a file `data/hang`), "deaf" (to SIGTERM), "noise"
-(prints what is no log line), "refuse" (ends with a line for people), "stop the second" (the second of that name stops itself) or
-"linger" (beats, ends of itself, and takes three seconds for that).
+(prints what is no log line), "refuse" (ends with a line for people), "stop the second" (the second of that name stops itself),
+"ail" (reports that it failed while there is a file `data/ail`) or "linger" (beats, ends of itself, and takes three seconds for that).
 `data/starts/NAME` gets a line a start: process id, common beginning, folder of compiled kernels.
 """
 
@@ -18,8 +18,12 @@ from models.camera.rig import Rig
 from models.config.site import Site
 from models.errors import UserError
 from models.messages import topics
+from models.messages.trouble import Trouble
 from models.process import ProcessContext
 from services.support.health import HealthReporter
+
+
+_DARK = Trouble("camera_dark", "its pictures are black")
 
 
 def fusion(context: ProcessContext) -> None:
@@ -61,7 +65,8 @@ def _report_until_stopped(context: ProcessContext, server: socket.socket | None 
     reporter = HealthReporter(context.name, context.bus, context.resources)
     while order == "deaf" or not context.stop.is_set():
         if reporter.due() and not (order == "hang" and (context.data / "hang").exists()):
-            reporter.report()
+            ails = order == "ail" and (context.data / "ail").exists()
+            reporter.report("failed" if ails else "ok", (_DARK,) if ails else ())
         _answer_or_wait(server)
 
 

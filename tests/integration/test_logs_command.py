@@ -41,6 +41,9 @@ def record(process: str, level: str, event: str, **more: object) -> LogRecord:
     return LogRecord(dt.datetime.now(dt.UTC), process, level, event, more, exception)
 
 
+GIVEN_UP = "edge-cam03 is given up: hung"
+
+
 @pytest.fixture
 def data(tmp_path: Path) -> Path:
     """A folder with a log of two files."""
@@ -49,6 +52,7 @@ def data(tmp_path: Path) -> Path:
     writer.write(LogRecord(old, "fusion", "info", "governor", {"rate_hz": 15}))
     for number in range(180):
         writer.write(numbered(number))
+    writer.write(record("supervisor", "error", GIVEN_UP))
     writer.write(record("edge-cam01", "warning", "no picture", camera="cam01"))
     writer.write(record("edge-cam02", "critical", "RuntimeError: broken", exception="Traceback:\n  in f\nRuntimeError: broken"))
     writer.close()
@@ -66,12 +70,15 @@ def test_people_see_aligned_lines_in_their_own_time(data: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "events"),
     [
-        (("--level", "Warning"), ["no picture", "RuntimeError: broken"]),
-        (("--process", "edge"), ["no picture", "RuntimeError: broken"]),
+        (("--level", "Warning"), [GIVEN_UP, "no picture", "RuntimeError: broken"]),
+        (("--process", "edge"), [GIVEN_UP, "no picture", "RuntimeError: broken"]),
         (("--process", "edge-cam01"), ["no picture"]),
         (("--process", "edge-cam01", "--process", "fusion", "--grep", "CAM01"), ["no picture"]),
+        (("--process", "edge-cam03"), [GIVEN_UP]),
+        (("--process", "edge-cam0"), []),
+        (("--process", "supervisor"), [GIVEN_UP]),
         (("--grep", "rate_hz=15"), ["governor"]),
-        (("--since", "10m"), ["no picture", "RuntimeError: broken"]),
+        (("--since", "10m"), [GIVEN_UP, "no picture", "RuntimeError: broken"]),
         (("--since", "2026-01-02T05:04:05", "-n", "1000", "--grep", "governor"), ["governor"]),
         (("--since", "2026-01-02T05:04:06", "-n", "1000", "--grep", "governor"), []),
         (("-n", "1"), ["RuntimeError: broken"]),
@@ -81,6 +88,12 @@ def test_people_see_aligned_lines_in_their_own_time(data: Path) -> None:
 def test_lines_are_chosen_by_options(data: Path, words: tuple[str, ...], events: list[str]) -> None:
     said = [json.loads(line) for line in kinebox_logs(data, "--json", *words).stdout.splitlines()]
     assert [each["event"] for each in said if each["event"] != "counted"] == events
+
+
+def test_a_filter_that_finds_nothing_says_so_beside_what_is_printed(data: Path) -> None:
+    result = kinebox_logs(data, "--grep", "no such words")
+    assert (result.returncode, result.stdout) == (0, "")
+    assert result.stderr == f"no line of the log in {data / 'logs'} matches\n"
 
 
 def test_two_hundred_lines_are_shown_if_nobody_asks_for_more(data: Path) -> None:
@@ -193,7 +206,10 @@ def test_the_log_of_a_box_with_a_crash_can_be_looked_at_and_sent(tmp_path: Path)
         # While it runs, so that reading disturbs no writing.
         crash = kinebox_logs(box.data, "--process", "edge-b", "--json").stdout.splitlines()
         assert box.end() == 0
-    (said,) = (json.loads(line) for line in crash)
+    records = [json.loads(line) for line in crash]
+    (said,) = (each for each in records if each["process"] == "edge-b")
+    assert any("edge-b is given up" in each["event"] for each in records if each["process"] == "supervisor")
+    assert {each["process"] for each in records} == {"edge-b", "supervisor"}
     assert (said["level"], said["event"]) == ("critical", "RuntimeError: crashed as ordered")
     assert said["exception"].startswith("Traceback (most recent call last):\n")
     assert list(said) == ["time", "process", "level", "event", "exception"]

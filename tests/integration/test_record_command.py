@@ -1,6 +1,7 @@
 """`kinebox record` and `kinebox lessons` as people type them, with a real recorder on real sockets."""
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -135,7 +136,9 @@ def test_what_makes_no_sense_is_refused_before_anybody_is_asked(tmp_path: Path, 
 
 def test_the_list_tells_what_is_wrong_with_a_lesson(tmp_path: Path) -> None:
     folder = tmp_path / "lessons"
-    assert "no lesson in" in kinebox("lessons", "--data", str(tmp_path)).stdout
+    assert f"no lesson in {folder};" in kinebox("lessons", "--data", os.path.relpath(tmp_path, ROOT)).stdout
+    nowhere = tmp_path / "nowhere"
+    assert f"there is no data folder {nowhere}; name the box's with --data" in refusal(kinebox("lessons", "--data", str(nowhere)))
     folder.mkdir()
     LessonWriter.create(folder, "empty", gym_header(Gym(), title="nothing")).finish()
     (folder / "foreign.mcap").write_bytes(b"no lesson")

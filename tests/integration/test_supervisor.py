@@ -170,3 +170,17 @@ def test_one_stream_holds_what_every_process_says(tmp_path: Path) -> None:
         shown = box.errors.read_text().splitlines()
         assert all(re.match(r"\d\d:\d\d:\d\d  (supervisor|camera [ab]) +  ", line) for line in shown), shown
         assert sum("what a library printed" in line for line in shown) == 1
+
+
+def test_a_part_that_says_that_it_failed_is_among_the_warnings_of_the_log_and_its_recovery_is_not(tmp_path: Path) -> None:
+    with Box(tmp_path, {"edge-a": "ail"}) as box:
+        box.wait_started()
+        (box.data / "ail").touch()
+        until(lambda: "edge-a is failed: its pictures are black" in box.errors.read_text(), "the word")
+        (box.data / "ail").unlink()
+        until(lambda: "edge-a is ok" in box.errors.read_text(), "its recovery")
+        assert box.end() == 0
+        lines = (box.data / "logs" / "kinebox.log").read_text().splitlines()
+        entries = [msgspec.json.decode(line, type=dict[str, str]) for line in lines]
+        levels = {entry["event"]: entry["level"] for entry in entries if entry["event"].startswith("edge-a is ")}
+        assert levels == {"edge-a is failed: its pictures are black": "error", "edge-a is ok": "info"}
