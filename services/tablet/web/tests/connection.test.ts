@@ -150,6 +150,10 @@ describe('what makes the figure', () => {
     expect(states.map((state) => makerOf(said(state)))).toEqual(['interrupted', 'interrupted', 'interrupted']);
   });
 
+  it('is missed while it gets ready again', () => {
+    expect(makerOf(said('starting'))).toBe('interrupted');
+  });
+
   it('is given up only if the box says so', () => {
     expect(makerOf(said('failed'))).toBe('failed');
   });

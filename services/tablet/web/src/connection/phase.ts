@@ -47,5 +47,5 @@ const MAKES_THE_FIGURE = 'fusion';
 export function makerOf(status: Pick<Status, 'processes'> | null): Maker {
   const state = status?.processes.find((process) => process.name === MAKES_THE_FIGURE)?.state;
   if (state === 'failed') return 'failed';
-  return state === 'gone' || state === 'silent' || state === 'unknown' ? 'interrupted' : 'works';
+  return state === undefined || state === 'ok' || state === 'degraded' ? 'works' : 'interrupted';
 }
