@@ -6,11 +6,17 @@ from importlib.metadata import version as installed_version
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from models.errors import UserError
-from services.cli import lesson_commands, log_commands
 from services.cli.user_error import exit_with_line
+
+try:
+    import typer
+except Exception as error:  # noqa: BLE001 - whatever a broken package raises; without it there is no command line at all
+    exit_with_line(
+        UserError(f"package typer cannot be imported ({error}); run `make setup`; if it stays so, delete .venv and run it again")
+    )
+
+from services.cli import lesson_commands, log_commands
 
 SiteFile = Annotated[Path, typer.Option("--site", help="The site file.", dir_okay=False)]
 SiteFileArgument = Annotated[Path, typer.Argument(metavar="FILE", help="The site file.", dir_okay=False)]

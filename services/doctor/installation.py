@@ -3,24 +3,21 @@
 import json
 import os
 import re
-import signal
-import subprocess
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib import metadata
 from pathlib import Path
 
 from packaging.specifiers import SpecifierSet
 
 from services import tablet
+from services.doctor.apart import REMEDY, import_finding, import_problems, run_module
 from services.doctor.finding import Examined, Fact, Finding
 from services.support.environment import process_environment
 from services.support.requirements import DISTRIBUTION, installed_version, required_packages
-from services.support.signals import signal_name
 from services.support.version import kinebox_version
 
 PAGE = Path(tablet.__file__).parent / "web" / "dist"
-_CHILD_S = 120.0
 _ASSET = re.compile(r'(?:src|href)="/(assets/[^"]+)"')
 
 
@@ -115,17 +112,15 @@ def _judge_python(installation: Installation) -> list[Finding]:
 
 def _judge_packages(installation: Installation) -> list[Finding]:
     findings = []
-    remedy = "run `make setup`; if it stays so, delete .venv and run it again"
     for package in installation.packages:
         where = f"package {package.name}"
         if package.installed is None:
-            findings.append(Finding("fault", where, f"{package.name} is not installed", "the list of installed packages", remedy))
+            findings.append(Finding("fault", where, f"{package.name} is not installed", "the list of installed packages", REMEDY))
         elif package.problem:
-            words = f"{package.name} {package.installed} cannot be imported: {package.problem}"
-            findings.append(Finding("fault", where, words, "importing it in a process of its own", remedy))
+            findings.append(import_finding(package.name, package.problem, package.installed))
         elif not package.fits:
             words = f"{package.name} is {package.installed}, but KineBox needs {package.wanted}"
-            findings.append(Finding("fault", where, words, "the list of installed packages", remedy))
+            findings.append(Finding("fault", where, words, "the list of installed packages", REMEDY))
     return findings
 
 
@@ -160,51 +155,19 @@ def _packages() -> tuple[Package, ...]:
         installed = installed_version(requirement.name)
         fits = installed is not None and requirement.specifier.contains(installed, prereleases=True)
         found.append(Package(requirement.name, str(requirement.specifier), installed, fits))
-    problems = _import({module: name for name in (each.name for each in found) if (module := modules.get(_canonical(name)))})
-    return tuple(Package(each.name, each.wanted, each.installed, each.fits, problems.get(each.name, "")) for each in found)
-
-
-def _import(packages: dict[str, str]) -> dict[str, str]:
-    """What is wrong with each package of `packages` (its name by its module) that cannot be imported."""
-    problems: dict[str, str] = {}
-    waiting = list(packages)
-    while waiting:
-        code, output, _ = _run("services.doctor.imports", *waiting, environment=dict(os.environ))
-        lines = output.splitlines()
-        for line in lines:
-            verdict, _, rest = line.partition(" ")
-            if verdict == "bad":
-                module, _, why = rest.partition(": ")
-                problems[packages[module]] = why
-        tried = [line.removeprefix("try ") for line in lines if line.startswith("try ")]
-        if code == 0 or not tried:
-            break
-        problems[packages[tried[-1]]] = f"it ended its process ({_end(code)})"
-        waiting = waiting[waiting.index(tried[-1]) + 1 :]
-    return problems
+    imported = {each.name: module for each in found if (module := modules.get(_canonical(each.name)))}
+    problems = import_problems(imported.values())
+    return tuple(replace(each, problem=problems.get(imported.get(each.name, ""), "")) for each in found)
 
 
 def _kernels(data: Path) -> tuple[int | None, tuple[str, ...], str]:
     """How many kernels there are, which are not compiled, and why that cannot be known."""
-    code, output, errors = _run("services.doctor.kernels", environment=dict(os.environ) | process_environment(data))
+    ended = run_module("services.doctor.kernels", environment=dict(os.environ) | process_environment(data))
     try:
-        told = json.loads(output)
+        told = json.loads(ended.output)
         return int(told["kernels"]), tuple(told["lacking"]), ""
     except (ValueError, LookupError, TypeError):
-        return None, (), (errors.strip().splitlines() or [_end(code)])[-1]
-
-
-def _run(module: str, *arguments: str, environment: dict[str, str]) -> tuple[int, str, str]:
-    command = [sys.executable, "-P", "-m", module, *arguments]
-    try:
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=_CHILD_S, check=False)  # noqa: S603
-    except subprocess.TimeoutExpired:
-        return -signal.SIGKILL, "", f"nothing came within {_CHILD_S:.0f} s"
-    return done.returncode, done.stdout, done.stderr
-
-
-def _end(code: int) -> str:
-    return signal_name(-code) if code < 0 else f"exit code {code}"
+        return None, (), (ended.errors.strip().splitlines() or [ended.how])[-1]
 
 
 def _page_lacks(page: Path) -> tuple[str, ...]:

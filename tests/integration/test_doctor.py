@@ -1,6 +1,7 @@
 """`kinebox doctor` names the cause of every trouble in the list, each really staged, and finds nothing where nothing is wrong."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -71,6 +72,29 @@ def test_the_command_tells_a_program_in_json_and_a_shell_by_its_exit_code(tmp_pa
     finding = next(finding for finding in told["findings"] if finding["where"] == "camera 'b'")
     assert finding.keys() == {"level", "where", "what", "known_by", "remedy"}
     assert {fact["where"] for fact in told["facts"]} >= {"processor", "memory", "disk", "packages", "site"}
+
+
+def command_without(module: str, folder: Path, *arguments: str) -> "subprocess.CompletedProcess[str]":
+    """The command on a machine on which a package is broken."""
+    (folder / f"{module}.py").write_text("raise ImportError('libgone.so: cannot open shared object file')")
+    words = [sys.executable, "-m", "services.cli.main", "doctor", *arguments]
+    environment = dict(os.environ) | {"PYTHONPATH": str(folder)}
+    return subprocess.run(words, capture_output=True, text=True, cwd=ROOT, env=environment, timeout=100, check=False)
+
+
+@pytest.mark.parametrize("module", ["msgspec", "numpy", "packaging", "psutil"])
+def test_a_package_that_the_doctor_needs_is_found_broken(module: str, tmp_path: Path) -> None:
+    result = command_without(module, tmp_path, "--json")
+    assert (result.returncode, result.stderr) == (1, "")
+    findings = json.loads(result.stdout)["findings"]
+    assert f"package {module}" in [finding["where"] for finding in findings]
+    assert all("libgone.so" in finding["what"] and "make setup" in finding["remedy"] for finding in findings)
+
+
+def test_a_broken_package_of_the_command_line_is_one_line(tmp_path: Path) -> None:
+    result = command_without("typer", tmp_path)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert re.fullmatch(r"kinebox: package typer cannot be imported \(libgone.so.*\); run `make setup`.*\n", result.stderr)
 
 
 def test_a_wrong_option_is_no_finding() -> None:
