@@ -2,6 +2,7 @@
 
 import threading
 
+from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.addressed import read_health
 from models.messages.health import Health, MachineHealth, State, SupervisorHealth
@@ -52,11 +53,27 @@ class BusLink:
         self._endpoint = endpoint
         self._refused = 0
         self._stop = threading.Event()
+        self._is_client = True
         self._bus: Bus | None = None
         self._subscription: Subscription | None = None
         self._beats: Subscription | None = None
         self._reporter: HealthReporter | None = None
         self._opener = threading.Thread(target=self._open, name="bus", daemon=True)
+        self._opener.start()
+
+    @property
+    def routes(self) -> bool:
+        """Whether everybody is heard through us."""
+        return not self._is_client and self._bus is not None
+
+    def route(self) -> None:
+        """Be the router from now on: the process that was it is given up, and without one nobody hears that."""
+        if not self._is_client:
+            return
+        self._leave()
+        self._is_client = False
+        self._stop.clear()
+        self._opener = threading.Thread(target=self._open_router, name="bus", daemon=True)
         self._opener.start()
 
     def heard(self) -> list[Health]:
@@ -100,10 +117,15 @@ class BusLink:
 
     def close(self) -> None:
         """Leave the bus."""
+        self._leave()
+
+    def _leave(self) -> None:
         self._stop.set()
         self._opener.join()
-        if self._bus is not None:
-            self._bus.close()
+        bus, self._bus, self._subscription, self._beats, self._reporter = self._bus, None, None, None, None
+        if bus is not None:
+            bus.close()
+        self.present.clear()
 
     def _open(self) -> None:
         from services.bus.zenoh_bus import BusError, open_client  # noqa: PLC0415 - importing takes time in which processes can start
@@ -115,6 +137,20 @@ class BusLink:
             except BusError:
                 bus.close()
                 self._stop.wait(_AGAIN_S)
+
+    def _open_router(self) -> None:
+        from services.bus.zenoh_bus import BusError, open_router  # noqa: PLC0415 - as above
+
+        while self._bus is None and not self._stop.is_set():
+            try:
+                bus = open_router(self._endpoint)
+            except UserError:  # What the dead process held is not free yet.
+                self._stop.wait(_AGAIN_S)
+                continue
+            try:
+                self._join(bus)
+            except BusError:
+                bus.close()
 
     def _join(self, bus: Bus) -> None:
         subscription = bus.subscribe(topics.ALL_HEALTH, keep=_KEEP)

@@ -131,6 +131,7 @@ class Supervisor:
             now_s = time.monotonic()
             held_up, before_s = now_s - before_s > HELD_UP_S, now_s
             self._stand_in(link, now_s)
+            self._stand_in(link, now_s)
             self._hear(link, now_s)
             self._start_others(link, now_s)
             if held_up:
@@ -207,6 +208,14 @@ class Supervisor:
     def _pass_on(self, post: Post, child: Child) -> None:
         for line in child.lines():
             self._journal.child_said(post.name, line)
+
+    def _stand_in(self, link: BusLink, now_s: float) -> None:
+        """Once the router is given up, have everybody heard through us."""
+        router = self._posts[0]
+        if router.given_up:
+            link.route()
+            if link.routes:
+                self._silence.hear(router.name, now_s)
 
     def _stand_in(self, link: BusLink, now_s: float) -> None:
         """Once the router is given up, have everybody heard through us."""

@@ -22,7 +22,7 @@ ENTRY_POINTS = """
 [kinebox.processes]
 fusion = tests.integration.fake_parts:fusion
 edge = {edge}
-tablet = tests.integration.fake_parts:tablet
+tablet = {tablet}
 recorder = tests.integration.fake_parts:recorder
 [kinebox.checks]
 edge = {check}
@@ -52,16 +52,19 @@ def write_site(folder: Path, page_port: int, bus_port: int, more: str = "") -> P
 
 
 def fake_parts(
-    folder: Path, check: str = "tests.integration.fake_parts:check", edge: str = "tests.integration.fake_parts:edge"
+    folder: Path,
+    check: str = "tests.integration.fake_parts:check",
+    edge: str = "tests.integration.fake_parts:edge",
+    tablet: str = "tests.integration.fake_parts:tablet",
 ) -> dict[str, str]:
     """An environment in which the parts of the box are the fake ones: an installed package that comes first.
 
-    `check` is what is checked before the start, `edge` the process of a camera.
+    `check` is what is checked before the start, `edge` the process of a camera, `tablet` the page's server.
     """
     package = folder / "packages" / "fake_parts-1.0.dist-info"
     package.mkdir(parents=True, exist_ok=True)
     (package / "METADATA").write_text("Metadata-Version: 2.1\nName: fake-parts\nVersion: 1.0\n")
-    (package / "entry_points.txt").write_text(ENTRY_POINTS.format(check=check, edge=edge))
+    (package / "entry_points.txt").write_text(ENTRY_POINTS.format(check=check, edge=edge, tablet=tablet))
     return dict(os.environ) | {"PYTHONPATH": f"{package.parent}{os.pathsep}{ROOT}"}
 
 
@@ -72,7 +75,7 @@ class Box:
         folder: an empty folder.
         orders: what the fake parts are told, by process.
         more: further lines of the site file.
-        edge: entry point of the process of a camera.
+        edge, tablet: entry points of the process of a camera and of the page's server.
     """
 
     def __init__(
@@ -81,6 +84,7 @@ class Box:
         orders: dict[str, str] | None = None,
         more: str = "",
         edge: str = "tests.integration.fake_parts:edge",
+        tablet: str = "tests.integration.fake_parts:tablet",
     ) -> None:
         self.data = folder / "data"
         (self.data / "orders").mkdir(parents=True)
@@ -93,7 +97,7 @@ class Box:
         with self.errors.open("w") as errors, self.output.open("w") as output:
             self.process = subprocess.Popen(
                 bound([sys.executable, "-m", "services.cli.main", "run", "--site", str(self.site), "--data", str(self.data)]),
-                env=fake_parts(folder, edge=edge),
+                env=fake_parts(folder, edge=edge, tablet=tablet),
                 stdout=output,
                 stderr=errors,
                 cwd=ROOT,

@@ -1,5 +1,6 @@
 """How the supervisor joins a real bus whose link breaks in between."""
 
+import threading
 from typing import Any
 
 import pytest
@@ -7,6 +8,7 @@ import zenoh
 
 from models.messages import codec, topics
 from models.messages.health import Health, SupervisorHealth
+from models.messages.trouble import Trouble
 from services.bus import zenoh_bus
 from services.supervisor.bus_link import BusLink
 from tests.integration.waiting import free_port, until
@@ -47,3 +49,55 @@ def test_a_link_that_breaks_while_the_supervisor_joins_does_not_leave_it_deaf(mo
     finally:
         link.close()
         router.close()
+
+
+def test_a_supervisor_in_the_place_of_a_router_that_is_given_up_hears_all_and_is_heard() -> None:
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    router = zenoh_bus.open_router(endpoint)
+    camera = zenoh_bus.open_client(endpoint, threading.Event())
+    assert camera is not None
+    camera.declare_alive(topics.alive("edge-a"))
+    said = camera.subscribe(topics.health("fusion"), keep=1)
+    link = BusLink(endpoint)
+    edge = Health("edge-a", 2, 2, "ok", (), 0.0, 0.0)
+    try:
+        until(lambda: "edge-a" in link.present, "who is present to be known")
+        router.close()
+        assert not link.routes
+        link.route()
+        link.route()  # once is enough
+
+        def hears() -> bool:
+            camera.publish(topics.health("edge-a"), codec.encode(edge))
+            return edge in link.heard()
+
+        until(hears, "the supervisor to hear the others again")
+        until(lambda: "edge-a" in link.present, "who is present to be known again")
+        assert link.routes
+        heard: list[Health] = []
+
+        def is_heard() -> bool:
+            link.say((), {"fusion": Trouble("given_up", "ended 6 times")}, None, OWN)
+            if (delivery := said.receive(0.05)) is not None:
+                heard.append(codec.decode(delivery.payload, Health))
+            return bool(heard)
+
+        until(is_heard, "the others to hear that fusion is given up")
+        assert (heard[0].state, heard[0].reason) == ("failed", "ended 6 times")
+    finally:
+        link.close()
+        camera.close()
+
+
+def test_a_supervisor_that_never_met_a_router_can_be_it() -> None:
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    link = BusLink(endpoint)
+    link.route()
+    try:
+        camera = zenoh_bus.open_client(endpoint, threading.Event())
+        assert camera is not None
+        camera.declare_alive(topics.alive("edge-a"))
+        until(lambda: "edge-a" in link.present, "who is present to be known")
+        camera.close()
+    finally:
+        link.close()
