@@ -95,8 +95,10 @@ def decode_rig(data: bytes, origin: str) -> Rig:
     """
     try:
         record = msgspec.toml.decode(data, type=_RigRecord)
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise UserError(f"calibration {origin}: {error}; correct the file or calibrate again") from error
+    except ValueError as error:  # Python reads no whole number of more than 4300 digits.
+        raise UserError(f"calibration {origin}: a number in it has thousands of digits; calibrate again") from error
     if record.version != RIG_VERSION:
         raise UserError(f"calibration {origin}: version {record.version} is not known to this KineBox ({RIG_VERSION})")
     try:

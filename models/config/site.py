@@ -34,7 +34,7 @@ class CameraConfig(Section, frozen=True):
 class BusConfig(Section, frozen=True):
     """How the processes of the box talk to one another (Zenoh; the fusion process is the router)."""
 
-    endpoint: Annotated[str, Meta(pattern=r"^tcp/[^/]+:\d+$", description="where the router listens")] = "tcp/127.0.0.1:7447"
+    endpoint: Annotated[str, Meta(pattern=r"^tcp/[^/]+:[0-9]{1,5}$", description="where the router listens")] = "tcp/127.0.0.1:7447"
 
 
 class TabletConfig(Section, frozen=True):
@@ -136,6 +136,8 @@ def site_version(data: bytes, origin: Path | str) -> int:
         version = msgspec.toml.decode(data, type=_Versioned).version
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise UserError(f"site file {origin}: {error}; {_what_to_do(error)}") from error
+    except ValueError as error:  # Python reads no whole number of more than 4300 digits.
+        raise UserError(f"site file {origin}: a number in it has thousands of digits; correct it") from error
     if version > SITE_VERSION:
         raise UserError(
             f"site file {origin}: version {version} is for a newer KineBox than this one, which reads {SITE_VERSION} "

@@ -138,7 +138,7 @@ def _site_without_secrets(file: Path) -> str:
     """The site file's values. It need not be a good one: that may be why somebody wants help."""
     try:
         values = tomllib.loads(read_file(file, "site file").decode())
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise UserError(f"site file {file}: {error}; correct it, or name another with --site") from error
     return tomlkit.dumps(redacted(values))
 

@@ -1,5 +1,6 @@
 """Reading a site: its file and the calibration that it names."""
 
+import codecs
 from pathlib import Path
 
 from models.camera.rig import Rig, decode_rig
@@ -33,9 +34,12 @@ def read_site(path: Path) -> tuple[Site, Rig]:
 
 
 def read_file(path: Path, what: str) -> bytes:
-    """The bytes of a file that a person named; UserError, which calls it `what`, if it cannot be read."""
+    """The text of a file that a person named, in bytes; UserError, which calls it `what`, if it cannot be read.
+
+    The mark with which Windows' editors begin a text in UTF-8 is left out.
+    """
     try:
-        return path.read_bytes()
+        return path.read_bytes().removeprefix(codecs.BOM_UTF8)
     except FileNotFoundError as error:
         raise UserError(f"{what} {path} does not exist; correct its path") from error
     except OSError as error:

@@ -81,13 +81,12 @@ def migrate_file(path: Path, now: dt.datetime) -> tuple[MigratedText, Path | Non
             migrated, but not safe against a power cut.
     """
     file = path.resolve()
-    data = read_file(file, "site file")
-    texts = migrated_text(data, path)
+    texts = migrated_text(read_file(file, "site file"), path)
     if texts.new == texts.old:
         return texts, None
     backup = file.with_name(f"{file.name}.bak-{texts.old_version}-{now.astimezone(dt.UTC):%Y%m%dT%H%M%SZ}")
     try:
-        _write_new(backup, data, file.stat().st_mode)
+        _write_new(backup, file.read_bytes(), file.stat().st_mode)
         _replace(file, texts.new.encode())
     except OSError as error:
         raise UserError(

@@ -2,6 +2,7 @@
 
 import pytest
 
+from models.camera.rig import decode_rig
 from models.config.site import decode_site
 from models.errors import UserError
 
@@ -30,3 +31,39 @@ def test_the_remedy_fits_the_fault(text: str, remedy: str) -> None:
     assert str(error.value).startswith("site file site.toml: ")
     assert str(error.value).endswith(f"; {remedy}")
     assert "\n" not in str(error.value)
+
+
+DIGITS = "9" * 5000
+GOOD = 'version = 2\nname = "Gym"\ncalibration = "rig.toml"\n' + "".join(
+    f'[[cameras]]\nname = "{name}"\nkind = "video"\npath = "{name}.avi"\n' for name in "ab"
+)
+
+
+def test_the_site_of_these_tests_is_good_but_for_what_they_change() -> None:
+    assert decode_site(GOOD.encode(), "site.toml").name == "Gym"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"version = {DIGITS}\n",
+        f"version = {DIGITS[:400]}\n",
+        f"version = 2\n[tablet]\nport = {DIGITS}\n",
+        f"{GOOD}[inference]\ncpu_target = {DIGITS[:400]}\n",
+        f'{GOOD}[bus]\nendpoint = "tcp/127.0.0.1:{DIGITS}"\n',
+    ],
+)
+def test_a_number_of_thousands_of_digits_is_an_error_like_any_other(text: str) -> None:
+    with pytest.raises(UserError, match=r"^site file site\.toml: ") as error:
+        decode_site(text.encode(), "site.toml")
+    assert len(str(error.value)) < 1000
+
+
+@pytest.mark.parametrize("digits", [400, 5000])
+def test_so_is_one_in_a_calibration(digits: int) -> None:
+    camera = (
+        f'[[camera]]\nname = "a"\nsize_px = [640, 480]\nmatrix_px = [[{DIGITS[:digits]}, 0, 320], [0, 600, 240], [0, 0, 1]]\n'
+        "rotation = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\ntranslation_m = [0, 0, 3]\n"
+    )
+    with pytest.raises(UserError, match=r"^calibration rig\.toml: "):
+        decode_rig(f"version = 1\n{camera}".encode(), "rig.toml")

@@ -1,5 +1,6 @@
 """A site file of an older version: refused by name, migrated with a backup, never half written."""
 
+import codecs
 import datetime as dt
 import errno
 import re
@@ -14,6 +15,7 @@ from models.config.migrations import FIRST_VERSION, MIGRATIONS
 from models.config.site import SITE_VERSION, decode_site, site_version
 from models.errors import UserError
 from services.support import site_migration
+from services.support.site_files import read_file
 from services.support.site_migration import migrate_file, migrated_text, rewritten
 from tests.installed import ROOT
 
@@ -116,6 +118,7 @@ FULL_DISK = """
 import datetime as dt, resource, sys
 from pathlib import Path
 from models.errors import UserError
+from services.support.site_files import read_file
 from services.support.site_migration import migrate_file
 resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
 try:
@@ -213,3 +216,18 @@ def test_a_list_of_tables_with_another_table_in_between_loses_no_value() -> None
     text = "[[list]]\nold = 1 # first\n[table]\na = 1\n[[list]]\nold = 2\n"
     new = {"list": [{"new": 1}, {"new": 2}], "table": {"a": 1}}
     assert tomllib.loads(rewritten(text, new)) == new
+
+
+def test_a_mark_of_the_byte_order_is_read_over_and_not_written(old: Path) -> None:
+    # As Windows' editor saves a text.
+    marked = codecs.BOM_UTF8 + old.read_bytes()
+    plain = migrated_text(old.read_bytes(), old)
+    old.write_bytes(marked)
+    texts, backup = migrate_file(old, NOW)
+    assert texts == plain
+    assert old.read_bytes() == plain.new.encode()
+    assert backup is not None
+    assert backup.read_bytes() == marked
+    old.write_bytes(codecs.BOM_UTF8 + old.read_bytes())
+    assert read_file(old, "site file") == plain.new.encode()
+    assert migrate_file(old, NOW)[1] is None
