@@ -27,7 +27,9 @@ TOLERANCE = 0.03
 PERIOD_S = 0.25
 """A pair is compared no more often."""
 NEEDED, KEPT = 24, 40
-"""Comparisons before a pair is judged, and those that it is judged by."""
+"""Comparisons before a pair is said to agree; and before it is said not to, which accuses somebody: those that it is judged by."""
+_AT_IT_S = 10.0
+"""A pair that was compared within so long is likely to be decided soon, and is waited for."""
 _MAX_GAP_S = 0.35
 
 
@@ -43,9 +45,12 @@ class _Comparisons:
         self.distances.append(distance)
         self._couples = couple if self._couples is None else self._couples.and_then(couple, KEPT)
 
-    def agree(self) -> bool:
-        """Whether the two cameras do."""
-        return statistics.median(self.distances) < TOLERANCE
+    def agree(self) -> bool | None:
+        """Whether the two cameras do; None as long as there is too little to tell."""
+        if len(self.distances) < NEEDED:
+            return None
+        agree = statistics.median(self.distances) < TOLERANCE
+        return agree if agree or len(self.distances) == KEPT else None
 
     def would_agree(self, fundamental: Float) -> bool:
         """Whether they would if that were their fundamental matrix."""
@@ -118,9 +123,12 @@ class Agreement:
 
     def judge(self) -> Disagreement | None:
         """Who does not agree; None while all do, or as long as it cannot be told."""
-        judged = {pair: seen.agree() for pair, seen in self._compared.items() if len(seen.distances) >= NEEDED}
+        judged = {pair: agree for pair, seen in self._compared.items() if (agree := seen.agree()) is not None}
         groups = _groups({camera for pair in judged for camera in pair}, [pair for pair, agree in judged.items() if agree])
-        if len(groups) < 2:
+        # Cameras that were not compared with one another do not contradict one another.
+        apart = [pair for pair, agree in judged.items() if not agree]
+        groups = [group for group in groups if any((a in group) != (b in group) for a, b in apart)]
+        if len(groups) < 2 or self._is_at_it(groups, judged):
             return None
         *smaller, largest = sorted(groups, key=len)
         tied = len(smaller[-1]) == len(largest)
@@ -128,6 +136,15 @@ class Agreement:
         exchanged = [two for two in combinations(strangers, 2) if self._would_agree(*two, judged)]
         names = self._views.rig.names
         return Disagreement(tuple(names[i] for i in strangers), tuple((names[a], names[b]) for a, b in exchanged), tied)
+
+    def _is_at_it(self, groups: list[set[int]], judged: Mapping[tuple[int, int], bool]) -> bool:
+        """Whether two groups are being compared by a pair that is yet to be judged, and may turn out to be one."""
+        group_of = {camera: number for number, group in enumerate(groups) for camera in group}
+        newest_s = max(self._compared_s.values())
+        return any(
+            pair not in judged and newest_s - t_s < _AT_IT_S and len({group_of.get(camera) for camera in pair} - {None}) == 2
+            for pair, t_s in self._compared_s.items()
+        )
 
     def _at(self, t_s: float, camera: int) -> list[Sighting]:
         """The persons of a camera at an instant between its two newest pictures, whom it tracked in both."""

@@ -2,7 +2,7 @@
 
 `data/orders/NAME` holds one word: "crash", "hang" (reports no more once there is a file `data/hang`), "deaf" (to SIGTERM), "noise"
 (prints what is no log line), "refuse" (ends with a line for people), "stop the second" (the second of that name stops itself),
-"ail" (reports that it failed while there is a file `data/ail`) or "linger" (beats, ends of itself, and takes three seconds for that).
+"ail" (reports that it failed while there is a file `data/ail`) or "linger" (beats, and takes three seconds to end of itself).
 `data/starts/NAME` gets a line a start: process id, common beginning, folder of compiled kernels.
 """
 
@@ -21,7 +21,6 @@ from models.messages import topics
 from models.messages.trouble import Trouble
 from models.process import ProcessContext
 from services.support.health import HealthReporter
-
 
 _DARK = Trouble("camera_dark", "its pictures are black")
 

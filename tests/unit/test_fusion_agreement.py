@@ -84,6 +84,41 @@ def test_nobody_is_blamed_before_there_is_enough_to_tell() -> None:
     assert empty.judge() is None
 
 
+def watched(rig: Rig, gym: Gym, shifts: tuple[tuple[tuple[int, ...], float], ...]) -> list[Disagreement | None]:
+    """Every second's verdict on a gym of which, one shift after the other, only some cameras are heard for so many seconds."""
+    agreement, verdicts = Agreement(rig, SightingConfig()), list[Disagreement | None]()
+    pictures = [event for event in gym.events() if isinstance(event, Observation)]
+    begin_s = pictures[0].t_mid_ns * 1e-9
+    ends_s = np.cumsum([seconds for _, seconds in shifts])
+    second = 0
+    for picture in pictures:
+        t_s = picture.t_mid_ns * 1e-9 - begin_s
+        shift = int(np.searchsorted(ends_s, t_s, side="right"))
+        if shift == len(shifts):
+            break
+        if picture.camera in {rig.names[i] for i in shifts[shift][0]}:
+            agreement.observe(picture)
+        if t_s >= second + 1:
+            second += 1
+            verdicts.append(agreement.judge())
+    return verdicts
+
+
+def test_cameras_that_were_not_yet_compared_with_one_another_do_not_contradict() -> None:
+    gym = Gym(seconds=40.0)
+    # After a seam under load some cameras are back before the others.
+    verdicts = watched(gym.rig, gym, (((0, 1), 12.0), ((2, 3), 12.0), ((0, 1, 2, 3), 12.0)))
+    assert len(verdicts) >= 34
+    assert verdicts == [None] * len(verdicts)
+
+
+def test_the_first_verdict_on_exchanged_cameras_is_that_they_are_exchanged() -> None:
+    gym = Gym(seconds=40.0)
+    verdicts = watched(calibrated_as(gym.rig, (1, 0, 2, 3)), gym, (((0, 1, 2), 9.0), ((0, 1, 2, 3), 30.0)))
+    first = next(verdict for verdict in verdicts if verdict is not None)
+    assert ("cam0", "cam1") in first.exchanged
+
+
 @pytest.mark.filterwarnings("error")
 def test_a_body_without_extent_neither_agrees_nor_contradicts() -> None:
     gym = Gym(seconds=SECONDS)
