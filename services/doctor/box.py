@@ -11,7 +11,7 @@ from models.config.site import Site
 from models.messages.health import MachineHealth, Restarts, SupervisorHealth
 from models.messages.trouble import CALIBRATION_CODES, MACHINE_CODES, Trouble, TroubleCode
 from models.process import EDGE, ROUTER, process_name
-from services.doctor.cameras import is_held_up, judge_camera
+from services.doctor.cameras import does_work, is_held_up, judge_camera
 from services.doctor.finding import Examined, Fact, Finding, Level
 from services.doctor.listen import Heard
 from services.doctor.machine import machine_finding
@@ -159,15 +159,18 @@ def _cameras(box: BoxFacts) -> Iterator[Finding]:
     cameras = [(camera.name, box.heard.healths.get(process_name(EDGE, camera.name))) for camera in box.site.cameras]
     # Of one that failed the supervisor tells why.
     heard = [(name, health) for name, health in cameras if health is not None and health.state != "failed"]
-    if len(heard) == len(cameras) and all(is_held_up(name, health, box.now_ns) for name, health in heard):
-        yield _busy(box)
-    else:
-        for name, health in heard:
+    working = [name for name, health in heard if does_work(name, health, box.now_ns)]
+    held_up = [name for name, health in heard if is_held_up(name, health, box.now_ns)]
+    busy = len(held_up) > 1 and held_up == working
+    if busy:
+        yield _busy(box, len(held_up))
+    for name, health in heard:
+        if not busy or name not in held_up:
             yield from judge_camera(name, health, box.now_ns)
 
 
-def _busy(box: BoxFacts) -> Finding:
-    """Once, in the place of the same words about every camera."""
+def _busy(box: BoxFacts, cameras: int) -> Finding:
+    """Once, in the place of the same words about every camera that works."""
     machine = _machine_of(box)
     own = sum(health.cpu_cores for health in box.heard.healths.values())
     load = (
@@ -175,7 +178,8 @@ def _busy(box: BoxFacts) -> Finding:
         if machine is None
         else f" ({machine.used_cores:.1f} of {machine.granted_cores:g} cores are in use, {own:.1f} of them by the box)"
     )
-    words = f"the box is too busy: all {len(box.site.cameras)} cameras fall behind, and fast movement may be missed{load}"
+    which = f"all {cameras} cameras" + ("" if cameras == len(box.site.cameras) else " that work")
+    words = f"the box is too busy: {which} fall behind, and fast movement may be missed{load}"
     remedy = "end other programs on this machine, use fewer cameras, or a faster box"
     return Finding("warning", "processor", words, "what the cameras' processes measured in the last second", remedy)
 
@@ -185,7 +189,8 @@ def _own_words(box: BoxFacts) -> Iterator[Finding]:
     for name, health in box.heard.healths.items():
         if name.startswith(f"{EDGE}-"):
             continue
-        for trouble in health.troubles:
+        # A wrong calibration is what may cause the others.
+        for trouble in sorted(health.troubles, key=lambda trouble: trouble.code not in CALIBRATION_CODES):
             if trouble.code not in _FOUND_OTHERWISE:
                 yield _own_word(name, trouble, box)
 
@@ -243,9 +248,15 @@ def _facts(box: BoxFacts) -> tuple[Fact, ...]:
     supervisor = _supervisor(box)
     if supervisor is None:
         return (Fact("running box", f"{len(box.running.processes)} processes of it are there"),)
+    given_up = {each.process for each in _told(box) if each.given_up}
+    speaking = len(box.heard.healths.keys() & set(box.expected) - given_up)  # For those the supervisor speaks.
     up = _ago(max(box.now_ns - supervisor.started_ns, 0) * 1e-9)
     rate = f"{box.heard.live / box.heard.seconds:.0f} figures a second" if box.heard.seconds else "not listened to"
-    return (Fact("running box", f"version {supervisor.version}, up for {up}, {len(box.heard.healths)} processes speak, {rate}"),)
+    return (
+        Fact(
+            "running box", f"version {supervisor.version}, up for {up}, {speaking} of {len(box.expected)} processes speak, {rate}"
+        ),
+    )
 
 
 def _ago(seconds: float) -> str:

@@ -17,6 +17,11 @@ BUSY_REASONS: frozenset[CameraReason] = frozenset({"behind", "backlog", "sparse"
 """Slowness that the box causes, not the camera."""
 
 
+def does_work(name: str, health: Health, now_ns: int) -> bool:
+    """Whether a camera delivers pictures, looked at often enough or not."""
+    return _status(name, health, now_ns).state in ("ok", "slow")
+
+
 def is_held_up(name: str, health: Health, now_ns: int) -> bool:
     """Whether a camera is slow for want of CPU."""
     return _status(name, health, now_ns).reason in BUSY_REASONS
@@ -48,7 +53,7 @@ def _words(status: CameraStatus, health: Health) -> str:
         "no_frames": "is silent: it delivers no pictures",
         "behind": f"falls behind: {rates}",
         "backlog": f"falls behind: its pictures wait {status.backlog_ms or 0:.0f} ms for their turn",
-        "sparse": f"is looked at too seldom for fast movement: {rates}",
+        "sparse": f"is looked at only {status.fresh_hz or 0:.1f} times a second, too seldom for fast movement",
         "degraded": "works, but how well cannot be known: its figures are none",
     }
     return words.get(status.reason, f"is {status.state}") + own

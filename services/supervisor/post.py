@@ -1,10 +1,12 @@
 """A post that has to be manned: one process of the box, whether it runs, waits for its restart or was given up."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from models.config.site import SupervisorConfig
 from models.errors import USER_ERROR_CODE
 from models.messages.health import Restarts, State
+from models.messages.trouble import TroubleCode
 from services.supervisor.child import Child, ChildSpec
 from services.supervisor.policy import GiveUp, History, Restart, decide
 from services.support.signals import signal_name
@@ -25,6 +27,7 @@ class Post:
         trouble: why it is being restarted; empty once it has been heard of again.
         given_up: why it was given up; empty if it was not.
         reported: the state that a person was last told.
+        told: the troubles that a person was told of since the process was well.
         first_heard_s: when the running process spoke first, on CLOCK_MONOTONIC; None if it has not.
         ended_s: when it ended last or could not be started, on CLOCK_MONOTONIC; None if it never did.
         last_end: what became of it then, as a verb.
@@ -37,6 +40,7 @@ class Post:
     trouble: str = ""
     given_up: str = ""
     reported: str = "ok"
+    told: set[TroubleCode] = field(default_factory=set)
     first_heard_s: float | None = None
     ended_s: float | None = None
     last_end: str = ""
@@ -52,19 +56,25 @@ class Post:
         """The process was started."""
         self.child, self.start_at_s, self.hangs = child, None, False
 
-    def reports(self, state: str, now_s: float) -> bool:
-        """The process told its state: whether that is news for a person."""
+    def reports(self, state: str, troubles: Iterable[TroubleCode], now_s: float) -> bool:
+        """The process told its state and what is wrong: whether that is news for a person.
+
+        A trouble is news once until the process is well again, so that one that comes and goes fills no log.
+        """
         if self.first_heard_s is None:
             self.first_heard_s = now_s
-        if state == self.reported or (state in _UNSETTLED and now_s - self.first_heard_s < SETTLES_WITHIN_S):
+        if state in _UNSETTLED and now_s - self.first_heard_s < SETTLES_WITHIN_S:
             return False
-        self.reported = state
-        return True
+        new = set(troubles) - self.told
+        self.told = self.told | new if state != "ok" else set()
+        changed, self.reported = state != self.reported, state
+        return changed or bool(new and state != "ok")
 
     def ended(self, code: int, user_error: str, now_s: float, config: SupervisorConfig) -> None:
         """The process ended: decide what becomes of the post."""
         self.child = None
         self.reported, self.first_heard_s = "ok", None
+        self.told = set()
         why = "hung" if self.hangs else describe_exit(code)
         if code == USER_ERROR_CODE and not self.hangs:
             self.ended_s, self.last_end = now_s, why

@@ -131,7 +131,6 @@ class Supervisor:
             now_s = time.monotonic()
             held_up, before_s = now_s - before_s > HELD_UP_S, now_s
             self._stand_in(link, now_s)
-            self._stand_in(link, now_s)
             self._hear(link, now_s)
             self._start_others(link, now_s)
             if held_up:
@@ -217,14 +216,6 @@ class Supervisor:
             if link.routes:
                 self._silence.hear(router.name, now_s)
 
-    def _stand_in(self, link: BusLink, now_s: float) -> None:
-        """Once the router is given up, have everybody heard through us."""
-        router = self._posts[0]
-        if router.given_up:
-            link.route()
-            if link.routes:
-                self._silence.hear(router.name, now_s)
-
     def _hear(self, link: BusLink, now_s: float) -> None:
         posts = {post.name: post for post in self._posts}
         for name, beat in link.beats():
@@ -240,7 +231,7 @@ class Supervisor:
                 self._silence.get_ready(post.name, now_s)
             else:
                 self._runs(post, now_s)
-            if post.reports(health.state, now_s):
+            if post.reports(health.state, (trouble.code for trouble in health.troubles), now_s):
                 why = f": {health.reason}" if health.reason else ""
                 self._journal.say(f"{post.name} is {health.state}{why}", level=_LEVELS[health.state])
 

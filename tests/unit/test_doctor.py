@@ -64,7 +64,7 @@ def test_of_a_box_that_runs_well_nothing_is_found() -> None:
     judged = judge_box(box())
     assert judged.findings == ()
     (fact,) = judged.facts
-    assert fact.words == "version 1.0, up for 90 s, 5 processes speak, 30 figures a second"
+    assert fact.words == "version 1.0, up for 90 s, 5 of 5 processes speak, 30 figures a second"
 
 
 def test_a_restart_long_ago_is_no_finding_but_many_are() -> None:
@@ -76,7 +76,9 @@ def test_a_restart_long_ago_is_no_finding_but_many_are() -> None:
 def test_a_process_that_was_given_up_is_told_once_and_not_as_missing_too() -> None:
     facts = box(restarted(2, 5, "ended 3 times"), health("edge-a", "failed", Trouble("given_up", "ended 3 times"), camera=None))
     facts.heard.alive.discard("edge-a")
-    assert whats(judge_box(facts)) == ["edge-a is given up and does not run any more: ended 3 times"]
+    judged = judge_box(facts)
+    assert whats(judged) == ["edge-a is given up and does not run any more: ended 3 times"]
+    assert "4 of 5 processes speak" in judged.facts[0].words, "for edge-a the supervisor speaks"
 
 
 def test_who_is_on_the_bus_and_says_nothing_hangs_and_who_is_not_is_missing() -> None:
@@ -119,6 +121,26 @@ def test_a_busy_box_is_told_once_and_not_of_each_camera() -> None:
     )
     (words,) = whats(judge_box(box(slow[0])))
     assert words == "camera 'a' falls behind: 2.0 of 5 pictures a second are looked at"
+
+
+def test_of_a_busy_box_with_a_dead_camera_the_two_causes_are_told_and_nothing_else() -> None:
+    cameras = [CameraConfig(name=n, kind="video", path=f"{n}.avi") for n in "abc"]
+    sparse = [health(f"edge-{n}", camera=CameraHealth(n, 30.0, 5.8, 5.0, 0, 20.0, "lightning", {})) for n in "ab"]
+    dead = health("edge-c", camera=CameraHealth("c", 0.0, 0.0, 5.0, 0, 0.0, "lightning", {}))
+    site = msgspec.structs.replace(SITE, cameras=cameras)
+    busy, silent = whats(judge_box(box(*sparse, dead, site=site)))
+    assert busy.startswith("the box is too busy: all 2 cameras that work fall behind")
+    assert silent == "camera 'c' is silent: it delivers no pictures"
+    (alone,) = whats(judge_box(box(sparse[0])))
+    assert alone == "camera 'a' is looked at only 5.8 times a second, too seldom for fast movement"
+
+
+def test_a_wrong_calibration_is_told_before_what_it_may_cause() -> None:
+    past = Trouble("epochs_differ", "b is not fused: its pictures are of a past epoch", "cut the films to one length")
+    exchanged = Trouble("cameras_exchanged", "a and b seem to be exchanged", "exchange their plugs")
+    found = judge_box(box(health("fusion", "degraded", past, exchanged))).findings
+    assert (found[0].where, found[0].what) == ("calibration", exchanged.words)
+    assert len(found) == 2
 
 
 @pytest.mark.parametrize(
