@@ -12,6 +12,7 @@ from services.lesson import origin
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.lesson_reader import open_lesson
 from services.lesson.replay import Comparison, Replayed, compare, configuration, replay
+from services.logs.printable import printable
 from services.support.version import kinebox_version
 
 
@@ -39,7 +40,7 @@ def what_changed(header: LessonHeader) -> list[str]:
     """What is not as it was when the lesson was recorded, as far as motions depend on it."""
     here = kinebox_version()
     version = [] if header.kinebox == here else [f"recorded with KineBox {header.kinebox}, this is {here}"]
-    return version + origin.differences(header.machine, origin.machine())
+    return [printable(line) for line in version + origin.differences(header.machine, origin.machine())]
 
 
 def report(found: Comparison, header: LessonHeader, changed: list[str], took_s: float) -> str:

@@ -4,6 +4,7 @@ import datetime as dt
 import difflib
 from pathlib import Path
 
+from services.logs.printable import printable
 from services.support import site_toml
 from services.support.site_files import read_file, read_site
 from services.support.site_migration import MigratedText, migrate_file, migrated_text
@@ -12,7 +13,7 @@ from services.support.site_migration import MigratedText, migrate_file, migrated
 def check(file: Path) -> str:
     """What there is to say of a good site file; UserError for one that is not."""
     site, rig = read_site(file)
-    return f"{file} is good: '{site.name}' with {len(rig)} calibrated cameras ({', '.join(rig.names)})\n"
+    return f"{file} is good: '{printable(site.name)}' with {len(rig)} calibrated cameras ({', '.join(rig.names)})\n"
 
 
 def show(file: Path) -> str:

@@ -14,6 +14,7 @@ from models.errors import UserError
 from services.cli.duration import clock
 from services.lesson.index import NAME, LessonIndex, LessonRow
 from services.lesson.layout import PART_SUFFIX, SUFFIX
+from services.logs.printable import printable
 from services.support.site_files import read_site
 
 _PIPE_WIDTH = 200
@@ -38,7 +39,7 @@ def listed(folder: Path, *, json: bool) -> None:
         typer.echo(msgspec.json.format(msgspec.json.encode([_entry(folder, row) for row in rows])).decode())
         return
     if not rows:
-        typer.echo(f"no lesson in {folder}; 'kinebox record' records one")
+        typer.echo(f"no lesson in {printable(str(folder))}; 'kinebox record' records one")
         return
     table = Table(box=None, header_style="bold", pad_edge=False)
     table.add_column("lesson", no_wrap=True)  # it is copied from here
@@ -46,12 +47,20 @@ def listed(folder: Path, *, json: bool) -> None:
         table.add_column(column, justify="right" if column in {"length", "MB", "gaps"} else "left")
     for row in rows:
         begun = f"{_begun(row):%Y-%m-%d %H:%M}"
-        table.add_row(row.lesson, row.title, begun, clock(row.seconds), f"{row.bytes / 1e6:.1f}", row.state, str(row.gaps))
+        table.add_row(
+            printable(row.lesson),
+            printable(row.title),
+            begun,
+            clock(row.seconds),
+            f"{row.bytes / 1e6:.1f}",
+            row.state,
+            str(row.gaps),
+        )
     # A pipe has no edge: a line a lesson there.
     Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else _PIPE_WIDTH).print(table)
     for row in rows:
         if row.problem:
-            typer.echo(f"{row.lesson}: {row.problem}", err=True)
+            typer.echo(printable(f"{row.lesson}: {row.problem}"), err=True)
 
 
 def find(lesson: str, folder: Path) -> Path:
@@ -80,7 +89,7 @@ def delete(lesson: str, folder: Path, *, sure: bool) -> None:
         if (folder / f"{Path(lesson).name}{PART_SUFFIX}").is_file():
             raise UserError(f"lesson '{lesson}' is not finished; end its recording, or start KineBox, which recovers it")
         raise UserError(f"no lesson '{lesson}' in {folder}; 'kinebox lessons' lists what there is")
-    if not sure and not typer.confirm(f"Remove {file} for good?"):
+    if not sure and not typer.confirm(f"Remove {printable(str(file))} for good?"):
         typer.echo("nothing was removed")
         return
     try:
@@ -89,7 +98,7 @@ def delete(lesson: str, folder: Path, *, sure: bool) -> None:
         raise UserError(f"{file} cannot be removed: {error.strerror}; correct its permissions") from error
     if (folder / NAME).is_file():
         LessonIndex(folder).lessons()
-    typer.echo(f"removed {file}")
+    typer.echo(f"removed {printable(str(file))}")
 
 
 def _begun(row: LessonRow) -> dt.datetime:

@@ -6,6 +6,7 @@ from dataclasses import asdict
 from itertools import groupby
 
 from services.doctor.finding import Examined, Finding, Level
+from services.logs.printable import printable
 
 _WIDTH = 110
 _LABEL = 11
@@ -50,7 +51,7 @@ def _facts(examined: Examined) -> str:
 
 def _row(label: str, words: str, width: int) -> str:
     # Paths and commands are to be copied: they are never cut, however long.
-    wrapped = textwrap.wrap(words, _WIDTH - width, break_long_words=False, break_on_hyphens=False) or [""]
+    wrapped = textwrap.wrap(printable(words), _WIDTH - width, break_long_words=False, break_on_hyphens=False) or [""]
     return "\n".join(f"{label if number == 0 else '':{width}}{line}" for number, line in enumerate(wrapped))
 
 

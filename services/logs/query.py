@@ -5,7 +5,8 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from services.logs.readable import details, printable
+from services.logs.printable import printable
+from services.logs.readable import details
 from services.logs.reader import Line
 from services.logs.record import LEVELS, LogRecord
 

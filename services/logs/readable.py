@@ -3,6 +3,7 @@
 import msgspec
 
 from models.process import EDGE
+from services.logs.printable import printable
 from services.logs.reader import Line
 from services.logs.record import LogRecord
 
@@ -47,14 +48,6 @@ def speaker(process: str) -> str:
 def details(record: LogRecord) -> list[str]:
     """The fields, each as `name=value`."""
     return [printable(f"{name}={_value(value)}") for name, value in record.fields.items()]
-
-
-def printable(text: str | bytes) -> str:
-    """A text that does nothing to a terminal and stays on its line."""
-    whole = text.decode(errors="backslashreplace") if isinstance(text, bytes) else text
-    if whole.isprintable():
-        return whole
-    return "".join(each if each.isprintable() or each == "\t" else each.encode("unicode_escape").decode() for each in whole)
 
 
 def _value(value: object) -> str:

@@ -19,7 +19,8 @@ from models.config.site import LogsConfig
 from models.errors import USER_ERROR_PREFIX
 from models.messages.trouble import Trouble, one_line
 from services.logs.files import LATEST
-from services.logs.readable import details, printable, speaker
+from services.logs.printable import printable
+from services.logs.readable import details, speaker
 from services.logs.record import LogRecord, record_of
 from services.logs.writer import IN_USE, LogWriter
 from services.supervisor.traceback_lines import TracebackLines

@@ -5,6 +5,7 @@ import socket
 import psutil
 
 from models.config.site import TabletConfig
+from services.logs.printable import printable
 
 _ANYWHERE = frozenset({"0.0.0.0", "::"})  # noqa: S104 - compared with, not listened on
 _TIMEOUT_S = 0.2
@@ -39,6 +40,6 @@ def addresses(config: TabletConfig) -> list[str]:
 def welcome(name: str, config: TabletConfig) -> str:
     """What the person who started the box is told once the page answers."""
     here, *elsewhere = addresses(config)
-    lines = ["", f"  {name} is running.", "", f"    on this machine   {here}"]
+    lines = ["", f"  {printable(name)} is running.", "", f"    on this machine   {here}"]
     lines += [f"    on a tablet       {address}" for address in elsewhere]
     return "\n".join([*lines, "", "  Ctrl-C ends it.", ""])
