@@ -5,6 +5,7 @@ until its summary is written. Opening a file that a crash left is the same as go
 chunk, and from there it can be appended to or finished.
 """
 
+import errno
 import fcntl
 import os
 import struct
@@ -171,6 +172,15 @@ class LessonWriter:
         """Bytes that are safe on the disk."""
         return self._contents.end
 
+    @property
+    def in_place(self) -> bool:
+        """Whether what is written lies at `path`: a file that was removed, renamed or replaced takes in all without a word."""
+        try:
+            there = self.path.stat()
+        except (FileNotFoundError, NotADirectoryError):
+            return False
+        return os.path.samestat(there, os.fstat(self._file.fileno()))
+
     def append(self, part: FusionLog, gap: str = "") -> None:
         """Write a part; it is safe when this returns.
 
@@ -198,8 +208,11 @@ class LessonWriter:
         """Write the summary, close the file and give it its final name, numbered if there is a file of that name; its path.
 
         Raises:
+            FileNotFoundError: it is not `in_place`.
             OSError: as for `append`; the file stays unfinished, and can be finished by recovery.
         """
+        if not self.in_place:
+            raise FileNotFoundError(errno.ENOENT, "the file was removed, renamed or replaced", str(self.path))
         self._write(_summary(self._contents))
         self._file.close()
         finished = rename_free(self.path, self.path.name.removesuffix(PART_SUFFIX), SUFFIX)

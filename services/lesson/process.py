@@ -1,18 +1,16 @@
 """The recorder process: parts of fusion's log and people's wishes in; files, requests to fusion and health out."""
 
-import fcntl
 from pathlib import Path
-from typing import BinaryIO
 
 import structlog
 
 from models.camera.rig import encode_rig
-from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.lesson import FusionLog, LessonRequest
 from models.messages.trouble import messages_refused
 from models.process import Delivery, ProcessContext
 from services.lesson import origin
+from services.lesson.folder_lock import lock
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.recorder import Recorder
 from services.lesson.recovery import recover
@@ -25,7 +23,6 @@ from services.support.version import kinebox_version
 KEEP = 64
 """Unread parts: half a minute, for which a slow disk may hold the recorder up."""
 _ROUND_S = 0.25
-_LOCK = ".recorder"
 
 log = structlog.get_logger()
 
@@ -39,25 +36,6 @@ def main(context: ProcessContext) -> None:
     folder = context.data / context.site.lessons.folder
     with lock(folder):
         RecorderLoop(context, folder).run()
-
-
-def lock(folder: Path) -> BinaryIO:
-    """Make the folder and keep every other recorder out of it for as long as the file is open.
-
-    Raises:
-        UserError: it cannot be made or written to, or another recorder is at work there.
-    """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        file = (folder / _LOCK).open("wb")
-    except OSError as error:
-        raise UserError(f"folder of lessons {folder}: {error.strerror}; correct lessons.folder or its permissions") from error
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
-        file.close()
-        raise UserError(f"another recorder works in {folder}; end that KineBox or change lessons.folder") from error
-    return file
 
 
 class RecorderLoop:

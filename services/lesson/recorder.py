@@ -1,8 +1,8 @@
 """The recorder without its bus: lessons begin and end, parts of fusion's log are written, trouble is told.
 
-A lesson ends when a person says so, when the box ends, and when the disk is full or broken: then it is finished as well as it can
-be, and the box goes on. A lesson that was cut short by the recorder's own death is gone on with, without a gap as long as fusion
-still has what was missed.
+A lesson ends when a person says so, when the box ends, and when the disk is full or broken or the file is taken away: then it is
+finished as well as it can be, and the box goes on. A lesson that was cut short by the recorder's own death is gone on with, without
+a gap as long as fusion still has what was missed.
 """
 
 import datetime as dt
@@ -11,15 +11,19 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 import structlog
 
 from models.config.site import LessonsConfig
+from models.errors import UserError
 from models.messages.health import RecorderHealth
 from models.messages.lesson import FusionLog, SegmentRequest
 from models.messages.trouble import Trouble
+from services.lesson.folder_lock import is_locked, lock
 from services.lesson.following import Following
 from services.lesson.index import LessonIndex
+from services.lesson.layout import PART_SUFFIX
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_header import LessonHeader
 from services.support.machine import free_disk_mib
@@ -34,6 +38,8 @@ log = structlog.get_logger()
 
 _NAME_LENGTH = 40
 _REMOVE = "remove lessons that are not needed"
+_TAKEN_AWAY = "its file was removed, renamed or replaced"
+_LEAVE_ALONE = f"leave files that end with '{PART_SUFFIX}' alone, and begin another lesson"
 
 
 @dataclass
@@ -47,7 +53,7 @@ class Recorder:
     """One lesson after the other.
 
     Args:
-        folder: of the lessons; it exists.
+        folder: of the lessons, locked; it is made and locked anew for the next lesson if somebody took it away.
         config: of the site.
         header: the header of a lesson of this title that begins now.
         unfinished: a lesson to go on with; None if there is none.
@@ -69,6 +75,7 @@ class Recorder:
         self._automatic_ns: int | None = clock_ns() if config.automatic else None
         self._ended: Trouble | None = None
         self._running: _Running | None = None
+        self._lock: BinaryIO | None = None
         if unfinished is not None:
             self._begin(unfinished, "the recorder was started again")
 
@@ -86,19 +93,27 @@ class Recorder:
         except OSError as error:
             self._trouble(f"no lesson was begun: {error.strerror} at {self._folder}", "make room or correct lessons.folder")
             return
+        except UserError as error:
+            self._trouble(f"no lesson was begun: {error}", "")
+            return
         self._ended = None
         self._begin(writer)
         log.info("lesson begins", lesson=_name(writer), title=title)
 
     def stop(self) -> None:
-        """End the lesson, if one is being recorded; in this run no automatic one begins any more."""
+        """End the lesson, if one is being recorded; in this run no automatic one begins any more.
+
+        Who wishes it goes on until it is done: then nothing is unsaid about how it ended.
+        """
         self._automatic_ns = None
-        self._ended = None
+        if self._running is not None:
+            self._ended = None
         self._finish()
 
     def close(self) -> None:
         """The box ends: the lesson is finished."""
         self._finish()
+        self._unlock()
 
     def take(self, part: FusionLog) -> None:
         """A part of fusion's log was heard."""
@@ -122,10 +137,13 @@ class Recorder:
             log.warning("gap in the lesson", lesson=_name(running.writer), reason=accepted.gap)
 
     def look_after(self) -> SegmentRequest | None:
-        """Once a second: watch the disk, begin what is automatic. Returns what fusion shall be asked for, if anything."""
+        """Once a second: watch disk and file, begin what is automatic. Returns what fusion shall be asked for, if anything."""
         if self._running is None and self._automatic_ns is not None and self._clock_ns() >= self._automatic_ns:
             self.start(AUTOMATIC_TITLE)
         if self._running is None:
+            return None
+        if not self._running.writer.in_place:
+            self._finish()
             return None
         free_mb = self._free_mb()
         if free_mb < self._config.least_free_mb:
@@ -173,11 +191,15 @@ class Recorder:
             self._trouble(f"lesson {name} ended: {why}", remedy)
         try:
             path = writer.finish()
+        except FileNotFoundError:
+            writer.close()
+            self._trouble(f"lesson {name} ended: {_TAKEN_AWAY}", _LEAVE_ALONE)
+            return
         except OSError as error:
             writer.close()
             self._trouble(f"lesson {name} ended: {error.strerror}", "make room on the disk: the next start of KineBox completes it")
-        else:
-            LessonIndex(self._folder).note(writer, path)
+            return
+        LessonIndex(self._folder).note(writer, path)
         log.info("lesson ends", lesson=name, seconds=round(writer.recorded_s, 1), mb=round(writer.size / 1e6, 2), gaps=writer.gaps)
 
     def _trouble(self, words: str, remedy: str) -> None:
@@ -197,8 +219,16 @@ class Recorder:
         return f"{free_mb:.0f} MB are left on the disk, lessons.least_free_mb is {least_mb}"
 
     def _create(self, header: LessonHeader) -> LessonWriter:
+        if not is_locked(self._folder):
+            self._unlock()
+            self._lock = lock(self._folder)
         taken = {path.name.split(".")[0] for path in self._folder.iterdir()}
         return LessonWriter.create(self._folder, lesson_name(header, taken), header)
+
+    def _unlock(self) -> None:
+        if self._lock is not None:
+            self._lock.close()
+            self._lock = None
 
 
 def lesson_name(header: LessonHeader, taken: set[str]) -> str:

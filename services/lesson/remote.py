@@ -51,13 +51,14 @@ class Remote:
         """End the lesson that is being recorded; its last state before, or None if none was.
 
         Raises:
-            UserError: no recorder is heard, or it does not end.
+            UserError: no recorder is heard, it does not end, or the lesson ended otherwise than it should have.
         """
         before = self._current()
-        if not before.lesson:
-            return None
-        self._ask(LessonRequest("stop"), lambda recorder: not recorder.lesson, "end the lesson")
-        return before
+        if before.lesson:
+            self._ask(LessonRequest("stop"), lambda recorder: not recorder.lesson, "end the lesson")
+        if self.newest is not None and refused(self.newest):
+            raise UserError(self.newest.reason)
+        return before if before.lesson else None
 
     def listen(self, timeout_s: float) -> Health | None:
         """The recorder's next word; None if none came."""

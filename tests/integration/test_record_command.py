@@ -2,6 +2,8 @@
 
 import json
 import os
+import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -93,6 +95,36 @@ def test_a_lesson_is_begun_and_left_seen_to_run_and_ended_from_elsewhere(tmp_pat
         assert "is not finished" in refusal(kinebox("lessons", "delete", lesson, "--data", str(box.data), "--yes"))
         assert record(box, "--stop").stdout.startswith(f"recorded {box.lessons / lesson}.mcap")
         until(lambda: not part.exists(), "the lesson to be finished")
+
+
+def test_a_lesson_whose_file_was_removed_is_not_said_to_be_recorded(tmp_path: Path) -> None:
+    with Box(tmp_path, LessonsConfig()).running() as box, box.recorder() as recorder:
+        assert record(box, "--detach").returncode == 0
+        box.wait_recorded(recorder.pid, parts=2)
+        (part,) = box.lessons.glob(f"*{PART_SUFFIX}")
+        part.unlink()
+        assert "ended: its file was removed, renamed or replaced" in refusal(record(box, "--stop"))
+        words = [*COMMAND, "record", "--site", str(box.site), "--data", str(box.data), "--for", "1m"]
+        with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT) as process:
+            box.wait_recorded(recorder.pid, parts=2)
+            shutil.rmtree(box.lessons)
+            out, errors = process.communicate(timeout=60)
+        assert process.returncode == 2
+        assert "ended: its file was removed, renamed or replaced" in errors
+        assert "recorded " not in out
+        again = record(box, "--for", "1s")
+        assert again.returncode == 0, again.stderr
+        assert len(list(box.lessons.glob("*.mcap"))) == 1
+
+
+def test_a_lesson_that_cannot_be_finished_is_not_said_to_be_recorded(tmp_path: Path) -> None:
+    with Box(tmp_path, LessonsConfig()).running() as box, box.recorder() as recorder:
+        assert record(box, "--detach").returncode == 0
+        box.wait_recorded(recorder.pid, parts=2)
+        (part,) = box.lessons.glob(f"*{PART_SUFFIX}")
+        # Part by part there is room until it is to be finished: the summary is larger than what is left.
+        resource.prlimit(recorder.pid, resource.RLIMIT_FSIZE, (part.stat().st_size, resource.RLIM_INFINITY))
+        assert "ended: File too large" in refusal(record(box, "--stop"))
 
 
 def test_without_a_box_or_without_its_recorder_there_is_one_line(tmp_path: Path) -> None:

@@ -27,7 +27,8 @@ from models.messages.motion import JointState, Motion
 from models.process import Delivery, Resources
 from services.bus.mailbox import Mailbox
 from services.fusion.process import FusionLoop
-from services.lesson.process import RecorderLoop, lock
+from services.lesson.folder_lock import lock
+from services.lesson.process import RecorderLoop
 from services.support.cpu import CpuMeter
 from services.tablet.process import decoded
 from services.tablet.room_state import RoomState

@@ -15,8 +15,9 @@ from mcap.reader import make_reader
 from models.messages import codec, topics
 from models.messages.lesson import FusionLog, LessonRequest
 from models.process import Delivery
+from services.lesson.folder_lock import lock
 from services.lesson.lesson_reader import open_lesson
-from services.lesson.process import RecorderLoop, lock
+from services.lesson.process import RecorderLoop
 from tests.mutations.feed import COUNTS, GROWTH_MB, FeedBus, Growth, context_of
 from tests.mutations.mutate import mutants
 from tests.mutations.samples import log

@@ -10,6 +10,7 @@ from models.config.site import LessonsConfig
 from models.messages.lesson import Entry, FusionLog, SegmentRequest
 from models.messages.trouble import one_line
 from services.lesson import recorder as module
+from services.lesson.folder_lock import lock
 from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import LessonWriter
@@ -28,6 +29,7 @@ class Room:
         self.now_ns = BEGIN_NS
         self.free_mb = 10_000.0
         self.folder = folder
+        lock(folder).close()
         monkeypatch.setattr(module, "free_disk_mib", lambda _folder: self.free_mb * 1e6 / 2**20)
         self.recorder = self.started(automatic=automatic)
 
@@ -62,7 +64,8 @@ class Room:
 
 @pytest.fixture
 def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Room]:
-    room = Room(tmp_path, monkeypatch)
+    (tmp_path / "lessons").mkdir()
+    room = Room(tmp_path / "lessons", monkeypatch)
     yield room
     room.recorder.close()
 
@@ -78,7 +81,7 @@ def test_nothing_is_recorded_and_fusion_is_asked_for_nothing_before_somebody_wis
     assert room.recorder.look_after() is None
     room.recorder.take(part(BEGIN_NS + 1, 0))
     assert room.recorder.health().lesson == ""
-    assert list(room.folder.iterdir()) == []
+    assert room.files(PART_SUFFIX) == room.files(SUFFIX) == []
 
 
 def test_a_lesson_is_recorded_from_start_to_stop(room: Room) -> None:
@@ -87,7 +90,7 @@ def test_a_lesson_is_recorded_from_start_to_stop(room: Room) -> None:
     health = room.recorder.health()
     assert (health.title, health.gaps) == ("7b, throwing", 0)
     assert health.recorded_s == pytest.approx(2.0, abs=0.1)
-    (written,) = room.folder.iterdir()
+    (written,) = room.folder.glob(f"*{PART_SUFFIX}")
     assert health.size_bytes == written.stat().st_size > 0
     room.recorder.stop()
     assert room.recorder.look_after() is None
@@ -201,6 +204,70 @@ def test_trouble_with_the_list_of_lessons_is_no_trouble_of_a_lesson_that_is_fini
     (name,) = room.files(SUFFIX)
     with open_lesson(room.folder / name) as lesson:
         assert lesson.summary().parts == 3
+
+
+def vanish(room: Room, how: str) -> Path:
+    """Take the file of the lesson that is being recorded away from its name; the file that is there then, if any."""
+    (file,) = room.folder.glob(f"*{PART_SUFFIX}")
+    if how == "removed":
+        file.unlink()
+    elif how == "renamed":
+        file = file.rename(room.folder / f"elsewhere{PART_SUFFIX}")
+    elif how == "replaced":
+        file.unlink()
+        file.write_bytes(b"another's")
+    else:
+        room.folder.rename(room.folder.with_name("moved away"))
+    return file
+
+
+VANISHED = ("removed", "renamed", "replaced", "folder moved away")
+
+
+@pytest.mark.parametrize("how", VANISHED)
+def test_a_lesson_whose_file_is_not_there_any_more_ends_within_a_second_and_nobody_is_sent_to_make_room(
+    room: Room, how: str
+) -> None:
+    room.recorder.start("one")
+    room.record(parts=3)
+    lesson = room.recorder.health().lesson
+    file = vanish(room, how)
+    assert room.recorder.look_after() is None
+    assert room.recorder.health().lesson == ""
+    assert f"lesson {lesson} ended: its file was removed, renamed or replaced" in room.trouble
+    assert "make room" not in room.trouble
+    assert "completes it" not in room.trouble
+    if how == "replaced":
+        assert file.read_bytes() == b"another's"
+    if how == "renamed":
+        assert recover(room.folder, run_ns=0) is None
+        with open_lesson(room.folder / f"elsewhere{SUFFIX}") as opened:
+            assert opened.summary().parts == 3
+
+
+@pytest.mark.parametrize("how", VANISHED)
+def test_a_lesson_that_is_stopped_before_its_loss_was_seen_is_not_said_to_be_recorded(room: Room, how: str) -> None:
+    room.recorder.start("one")
+    room.record(parts=3)
+    vanish(room, how)
+    room.recorder.stop()
+    assert "its file was removed, renamed or replaced" in room.trouble
+    room.recorder.stop()  # The wish is repeated until it is seen to be done.
+    assert "its file was removed, renamed or replaced" in room.trouble
+
+
+def test_after_the_folder_was_moved_away_the_next_lesson_makes_it_anew(room: Room) -> None:
+    room.recorder.start("one")
+    room.record(parts=1)
+    vanish(room, "folder moved away")
+    assert room.recorder.look_after() is None
+    room.recorder.start("two")
+    assert room.trouble == ""
+    room.record(parts=2)
+    room.recorder.stop()
+    (name,) = room.files(SUFFIX)
+    with open_lesson(room.folder / name) as opened:
+        assert opened.summary().parts == 2
 
 
 def test_a_folder_that_cannot_be_written_to_is_named(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,50 @@
+"""Who has a lesson ended hears how it ended, and not only that it did."""
+
+import pytest
+
+from models.errors import UserError
+from models.messages import codec, topics
+from models.messages.health import Health, RecorderHealth
+from models.messages.trouble import Trouble
+from models.process import Bus
+from services.bus.memory import MemoryRouter
+from services.lesson.remote import Remote
+
+ENDED = Trouble("not_recording", "lesson 7b ended: No space left on device", "make room on the disk")
+
+
+def said(lesson: str, trouble: Trouble | None = None) -> bytes:
+    troubles = () if trouble is None else (trouble,)
+    recorder = RecorderHealth(lesson, "", 10.0 if lesson else 0.0, 1, 0)
+    return codec.encode(Health("recorder", 1, 5, "degraded" if troubles else "ok", troubles, 0.1, 50.0, recorder=recorder))
+
+
+def asked(*words: bytes) -> tuple[Remote, Bus]:
+    """Somebody who asks, and will hear these words of the recorder one after the other."""
+    router = MemoryRouter()
+    box, remote = router.open(), Remote(router.open())
+    for word in words:
+        box.publish(topics.health("recorder"), word)
+    return remote, box
+
+
+def test_a_lesson_that_ended_as_wished_is_told_with_its_length() -> None:
+    remote, box = asked(said("7b"), said(""))
+    last = remote.stop()
+    assert last is not None
+    assert (last.lesson, last.recorded_s) == ("7b", 10.0)
+    box.close()
+
+
+@pytest.mark.parametrize("words", [(said("7b"), said("", ENDED)), (said("", ENDED),)], ids=["while it ends", "before"])
+def test_a_lesson_that_could_not_be_finished_is_told_with_the_reason(words: tuple[bytes, ...]) -> None:
+    remote, box = asked(*words)
+    with pytest.raises(UserError, match="lesson 7b ended: No space left on device; make room on the disk"):
+        remote.stop()
+    box.close()
+
+
+def test_where_nothing_was_recorded_nothing_is_ended() -> None:
+    remote, box = asked(said(""))
+    assert remote.stop() is None
+    box.close()
