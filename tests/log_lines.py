@@ -14,7 +14,7 @@ from services.logs.record import LEVELS, LogRecord
 NOON = dt.datetime(2025, 11, 22, 12, 0, 0, tzinfo=dt.UTC)
 # All that a program may hold in a text, halves of surrogate pairs included.
 TEXTS = st.text(st.characters(), max_size=20)
-NAMES = st.text(string.ascii_lowercase + "_", min_size=1, max_size=6)
+NAMES = st.text(string.ascii_lowercase + "_", min_size=1, max_size=6).filter(lambda name: name not in {"time", "level", "event"})
 VALUES: st.SearchStrategy[Any] = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | TEXTS | st.binary(max_size=5) | st.builds(object),
     lambda inner: st.lists(inner, max_size=20) | st.dictionaries(TEXTS, inner, max_size=4) | st.tuples(inner, inner),

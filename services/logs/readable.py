@@ -1,5 +1,7 @@
 """Lines of the log for people."""
 
+import datetime as dt
+
 import msgspec
 
 from models.process import EDGE
@@ -22,7 +24,7 @@ def readable(line: Line, *, colour: bool) -> str:
     if record is None:
         head = [f"{line.file}:{line.number}"[:23].ljust(23), _coloured("damaged", colour=colour), printable(line.raw)]
         return "  ".join(head)
-    time = record.time.astimezone().strftime("%Y-%m-%d %H:%M:%S.%f")[:-3]
+    time = local(record.time).replace(tzinfo=None).isoformat(sep=" ", timespec="milliseconds")
     said = " ".join((printable(record.event), *details(record)))
     first = "  ".join(
         [time, _coloured(record.level, colour=colour), printable(record.process).ljust(_PROCESS_WIDTH), said]
@@ -37,6 +39,14 @@ def as_json(line: Line) -> str:
     return msgspec.json.encode(
         {"damaged": line.raw.decode(errors="backslashreplace"), "file": line.file, "line": line.number}
     ).decode()
+
+
+def local(time: dt.datetime) -> dt.datetime:
+    """An aware time on this machine's clock; in UTC at the ends of the calendar, which the hours of a zone would lead out of."""
+    try:
+        return time.astimezone()
+    except (OverflowError, ValueError):
+        return time.astimezone(dt.UTC)
 
 
 def speaker(process: str) -> str:

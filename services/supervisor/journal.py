@@ -20,7 +20,7 @@ from models.errors import USER_ERROR_PREFIX
 from models.messages.trouble import Trouble, one_line
 from services.logs.files import LATEST
 from services.logs.printable import printable
-from services.logs.readable import details, speaker
+from services.logs.readable import details, local, speaker
 from services.logs.record import LogRecord, record_of
 from services.logs.writer import IN_USE, LogWriter
 from services.supervisor.traceback_lines import TracebackLines
@@ -129,7 +129,7 @@ class Journal:
             self._show(record_of({"event": f"what is said is kept in {self.path} again"}, _SUPERVISOR, _now()))
 
     def _show(self, record: LogRecord) -> None:
-        clock = record.time.astimezone().strftime("%H:%M:%S")
+        clock = local(record.time).strftime("%H:%M:%S")
         said = " ".join((printable(record.event), *details(record)))
         lines = [f"{clock}  {printable(speaker(record.process)):12}  {said}".rstrip()]
         if record.exception and self.trouble is not None:

@@ -9,7 +9,8 @@ from models.config.site import TabletConfig
 from models.errors import USER_ERROR_CODE, UserError
 from services.cli import check_lesson, config, lessons
 from services.cli.user_error import exit_with_line
-from services.lesson.index import LessonRow
+from services.lesson import origin
+from services.lesson.index import LessonIndex, LessonRow
 from services.supervisor.page import welcome
 from tests.integration.box import write_site
 
@@ -29,7 +30,7 @@ def test_the_list_of_lessons_keeps_its_lines(
 ) -> None:
     row = LessonRow("2026-11-22T100000", "", 0.0, 60.0, 1_000_000, 0, 1, "finished", "", 0)
     evil = LessonRow(**{name: getattr(row, name) for name in LessonRow.__annotations__} | {field: EVIL})
-    monkeypatch.setattr(lessons.LessonIndex, "lessons", lambda _index: [row, evil])
+    monkeypatch.setattr(LessonIndex, "lessons", lambda _index: [row, evil])
     lessons.listed(tmp_path, json=False)
     output, errors = capsys.readouterr()
     if field == "problem":
@@ -62,7 +63,7 @@ def test_an_error_stays_one_line(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_what_was_different_when_a_lesson_was_recorded_is_one_line_each(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(check_lesson.origin, "machine", lambda: "here")
+    monkeypatch.setattr(origin, "machine", lambda: "here")
 
     class Header:
         kinebox = EVIL
