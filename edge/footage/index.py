@@ -5,6 +5,8 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
+from models.make_command import make_command
+
 INDEX_NAME = "installed.json"
 
 
@@ -53,4 +55,4 @@ def _sha256(path: Path) -> str:
 
 def remedy(folder: Path) -> str:
     """What to do about prepared footage in `folder` that is harmed."""
-    return f"delete {folder / INDEX_NAME} and run `make footage SOURCE={folder.name}`"
+    return f"delete {folder / INDEX_NAME} and run {make_command(f'footage SOURCE={folder.name}', folder.parent)}"

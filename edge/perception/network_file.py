@@ -8,6 +8,7 @@ import hashlib
 from pathlib import Path
 
 from models.errors import UserError
+from models.make_command import make_command
 from models.networks.installed import FILE_NAME, FOLDER, decode_installed, remedy
 
 
@@ -22,7 +23,7 @@ def read_network_file(name: str, data: Path) -> bytes:
     try:
         installed = decode_installed(listed.read_bytes(), listed)
     except FileNotFoundError as error:
-        raise UserError(f"network {name}: there are no networks in {folder}; run `make networks`") from error
+        raise UserError(f"network {name}: there are no networks in {folder}; run {make_command('networks', data)}") from error
     except OSError as error:
         raise UserError(f"network {name}: {listed} cannot be read ({error.strerror}); {remedy(listed)}") from error
     entry = installed.networks.get(name)

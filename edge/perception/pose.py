@@ -14,6 +14,7 @@ import numpy as np
 from edge.perception.networks import Network, Provider, load_network
 from models.arrays import Float32, UInt8
 from models.errors import UserError
+from models.make_command import make_command
 from models.messages.control import PoseNetwork as PoseNetworkName
 from models.skeleton import coco
 
@@ -113,7 +114,9 @@ def load_pose_network(name: PoseNetworkName, data: Path, provider: Provider = "c
     """Load Thunder or Lightning from the data folder; UserError as `load_network`."""
     network = load_network(f"movenet-{name}", data, provider)
     if network.size_px[0] != network.size_px[1]:
-        raise UserError(f"network movenet-{name}: takes {network.size_px} pixels, not a square; run `make networks`")
+        raise UserError(
+            f"network movenet-{name}: takes {network.size_px} pixels, not a square; run {make_command('networks', data)}"
+        )
     return PoseNetwork(name, network)
 
 

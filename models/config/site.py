@@ -151,7 +151,7 @@ def _what_to_do(error: Exception) -> str:
         return "see docs/configuration.md for every key"
     if any(word in str(error) for word in ("character '\\n'", "Unterminated string", 'Expected "\'"')):
         return "a quote is not closed in that line, or before it; close it"
-    return "it is no TOML there; look for a quote, a bracket or an equals sign that is missing, and correct it"
+    return "it is no TOML there; look for a quote, bracket, value or equals sign that is missing, and correct it"
 
 
 def decode_site(data: bytes, origin: Path | str) -> Site:

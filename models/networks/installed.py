@@ -5,6 +5,7 @@ from pathlib import Path
 import msgspec
 
 from models.errors import UserError
+from models.make_command import make_command
 
 FOLDER = "networks"
 """Folder of the converted networks inside the data folder."""
@@ -62,4 +63,4 @@ def decode_installed(data: bytes, file: Path) -> Installed:
 
 def remedy(file: Path) -> str:
     """What to do about networks that are harmed, given the path of their list: Make goes by its presence alone."""
-    return f"delete {file} and run `make networks`"
+    return f"delete {file} and run {make_command('networks', file.parent.parent)}"

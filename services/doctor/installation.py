@@ -10,6 +10,7 @@ from pathlib import Path
 
 from packaging.specifiers import SpecifierSet
 
+from models.make_command import make_command
 from services import tablet
 from services.doctor.apart import REMEDY, import_finding, import_problems, run_module
 from services.doctor.finding import Examined, Fact, Finding
@@ -135,9 +136,10 @@ def _judge_page(installation: Installation) -> list[Finding]:
 
 def _judge_kernels(installation: Installation) -> list[Finding]:
     folder = installation.kernel_folder
+    make = make_command("kernels", folder.parent)
     if installation.kernels is None:
         words = f"the numerical kernels cannot be looked at: {installation.kernels_problem}"
-        return [Finding("fault", "kernels", words, "loading them in a process of its own", "run `make kernels`")]
+        return [Finding("fault", "kernels", words, "loading them in a process of its own", f"run {make}")]
     if not installation.kernels_lacking:
         return []
     names = ", ".join(installation.kernels_lacking[:3]) + (" ..." if len(installation.kernels_lacking) > 3 else "")
@@ -145,7 +147,7 @@ def _judge_kernels(installation: Installation) -> list[Finding]:
         f"{len(installation.kernels_lacking)} of {installation.kernels} numerical kernels are not compiled for this code and "
         f"processor ({names}); the next start takes about a minute longer"
     )
-    return [Finding("warning", "kernels", words, f"numba's index in {folder}", f"delete {folder} and run `make kernels`")]
+    return [Finding("warning", "kernels", words, f"numba's index in {folder}", f"delete {folder} and run {make}")]
 
 
 def _packages() -> tuple[Package, ...]:

@@ -56,7 +56,7 @@ FAULTS: dict[str, tuple[Callable[[House], object], str]] = {
     "the site file is missing": (lambda house: house.site.unlink(), r"site file .*site\.toml does not exist; correct"),
     "the site file is no TOML": (
         lambda house: house.site.write_text("name = "),
-        r"site file .*site\.toml: .*see docs/configuration",
+        r"site file .*site\.toml: .*it is no TOML there; look for",
     ),
     "a key is unknown": (
         lambda house: replace_text(house.site, "[tablet]\n", "[tablet]\nspeling = 1\n"),
@@ -94,7 +94,7 @@ FAULTS: dict[str, tuple[Callable[[House], object], str]] = {
     "a video is missing": (lambda house: (house.videos / "b.avi").unlink(), r"camera 'b': .*b\.avi is missing; correct"),
     "a video is truncated": (
         lambda house: _truncate(house.videos / "b.avi"),
-        r"camera 'b': .*b\.avi has \d+ bytes instead of \d+; delete .*installed\.json and run `make footage SOURCE=footage`",
+        r"camera 'b': .*b\.avi has \d+ bytes instead of \d+; delete .*installed\.json and run `make footage SOURCE=footage DATA=",
     ),
     "a video is none": (_undescribed_garbage, r"camera 'a': .*a\.avi is not a video that can be read .*copy or prepare it again"),
     "a video lasts longer than the others": (
@@ -119,16 +119,19 @@ FAULTS: dict[str, tuple[Callable[[House], object], str]] = {
     ),
     "the list of networks cannot be read": (
         lambda house: _folder_in_place_of(house.networks / "installed.json"),
-        r"network movenet-thunder: .*installed\.json cannot be read \(Is a directory\); delete .* and run `make networks`",
+        r"network movenet-thunder: .*installed\.json cannot be read \(Is a directory\); delete .* and run `make networks DATA=",
     ),
-    "no network is installed": (lambda house: shutil.rmtree(house.networks), r"network movenet-thunder: .*run `make networks`"),
+    "no network is installed": (
+        lambda house: shutil.rmtree(house.networks),
+        r"network movenet-thunder: .*run `make networks DATA=",
+    ),
     "a network is missing": (
         lambda house: (house.networks / "nanodet.onnx").unlink(),
-        r"network nanodet: .*nanodet\.onnx is missing; delete .* and run `make networks`",
+        r"network nanodet: .*nanodet\.onnx is missing; delete .* and run `make networks DATA=",
     ),
     "a network has a wrong hash": (
         lambda house: (house.networks / "movenet-lightning.onnx").write_bytes(b"other"),
-        r"network movenet-lightning: .*movenet-lightning\.onnx is damaged .*delete .* and run `make networks`",
+        r"network movenet-lightning: .*movenet-lightning\.onnx is damaged .*delete .* and run `make networks DATA=",
     ),
     "the page's address is none": (
         lambda house: replace_text(house.site, 'host = "127.0.0.1"', 'host = "192.0.2.99"'),

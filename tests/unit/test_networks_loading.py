@@ -41,18 +41,20 @@ def test_a_network_runs_on_any_number_of_pictures(data: Path) -> None:
 
 
 def test_no_networks_at_all(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match=r"network movenet-thunder: there are no networks in .*; run `make networks`"):
+    with pytest.raises(UserError, match=r"network movenet-thunder: there are no networks in .*; run `make networks DATA="):
         load_network("movenet-thunder", tmp_path)
 
 
 def test_a_network_that_is_not_listed(data: Path) -> None:
-    with pytest.raises(UserError, match=r"network nanodet: .*run `make networks`"):
+    with pytest.raises(UserError, match=r"network nanodet: .*run `make networks DATA="):
         load_network("nanodet", data)
 
 
 def test_a_network_whose_file_is_gone(data: Path) -> None:
     (data / "networks" / "toy.onnx").unlink()
-    with pytest.raises(UserError, match=r"network toy: .*toy\.onnx is missing; delete .*installed\.json and run `make networks`"):
+    with pytest.raises(
+        UserError, match=r"network toy: .*toy\.onnx is missing; delete .*installed\.json and run `make networks DATA="
+    ):
         load_network("toy", data)
 
 
@@ -69,13 +71,15 @@ def test_a_damaged_network_is_never_opened(data: Path, damage: str) -> None:
     path = data / "networks" / "toy.onnx"
     model = path.read_bytes()
     path.write_bytes({"truncated": model[: len(model) // 2], "empty": b"", "altered": b"x" + model[1:]}[damage])
-    with pytest.raises(UserError, match=r"network toy: .*toy\.onnx is damaged .*run `make networks`"):
+    with pytest.raises(UserError, match=r"network toy: .*toy\.onnx is damaged .*run `make networks DATA="):
         load_network("toy", data)
 
 
 def test_a_damaged_list_says_what_to_do(data: Path) -> None:
     (data / "networks" / "installed.json").write_text("{")
-    with pytest.raises(UserError, match=r"installed\.json cannot be read .*; delete .*/installed\.json and run `make networks`"):
+    with pytest.raises(
+        UserError, match=r"installed\.json cannot be read .*; delete .*/installed\.json and run `make networks DATA="
+    ):
         load_network("toy", data)
 
 

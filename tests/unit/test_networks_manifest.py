@@ -54,5 +54,5 @@ def test_the_list_of_installed_networks_survives_a_round_trip() -> None:
 
 @pytest.mark.parametrize("data", [b"", b"{", b'{"version": 1}', b'{"version": 99, "networks": {}}'])
 def test_a_damaged_list_of_installed_networks_says_what_to_do(data: bytes) -> None:
-    with pytest.raises(UserError, match=r"; delete data/installed\.json and run `make networks`$"):
-        decode_installed(data, Path("data/installed.json"))
+    with pytest.raises(UserError, match=r"; delete build/networks/installed\.json and run `make networks`$"):
+        decode_installed(data, Path("build/networks/installed.json"))

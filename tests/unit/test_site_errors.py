@@ -15,11 +15,11 @@ from models.errors import UserError
         ("version = 2\nname = 'Gym", "a quote is not closed in that line, or before it; close it"),
         (
             "version = 2\n[[cameras]\n",
-            "it is no TOML there; look for a quote, a bracket or an equals sign that is missing, and correct it",
+            "it is no TOML there; look for a quote, bracket, value or equals sign that is missing, and correct it",
         ),
         (
             "version = 2\nname Gym\n",
-            "it is no TOML there; look for a quote, a bracket or an equals sign that is missing, and correct it",
+            "it is no TOML there; look for a quote, bracket, value or equals sign that is missing, and correct it",
         ),
         ("version = 2\nname = 3\n", "see docs/configuration.md for every key"),
         ('version = "2"\n', "see docs/configuration.md for every key"),

@@ -46,28 +46,28 @@ DATA_FOLDER: dict[str, Trouble] = {
         broken(lambda house: flip_byte(house.networks / "nanodet.onnx")),
         "network nanodet",
         r"nanodet\.onnx is damaged",
-        "run `make networks`",
+        "run `make networks DATA=",
     ),
     "no network is installed": Trouble(
-        broken(lambda house: shutil.rmtree(house.networks)), "networks", "there are no networks in", "run `make networks`"
+        broken(lambda house: shutil.rmtree(house.networks)), "networks", "there are no networks in", "run `make networks DATA="
     ),
     "a camera's file is cut off": Trouble(
         broken(lambda house: (house.videos / "b.avi").write_bytes((house.videos / "b.avi").read_bytes()[:-100])),
         "camera 'b'",
         r"b\.avi has \d+ bytes instead of \d+",
-        "run `make footage SOURCE=footage`",
+        "run `make footage SOURCE=footage DATA=",
     ),
     "a camera's file has one wrong byte": Trouble(
         broken(lambda house: flip_byte(house.videos / "a.avi")),
         "camera 'a'",
         r"a\.avi is damaged",
-        "run `make footage SOURCE=footage`",
+        "run `make footage SOURCE=footage DATA=",
     ),
     "a camera's file is missing": Trouble(
         broken(lambda house: (house.videos / "b.avi").unlink()), "camera 'b'", r"b\.avi is missing", "correct `path`"
     ),
     "the built-in footage is damaged": Trouble(
-        footage_without_a_site, "footage", r"a\.avi is missing or damaged", "run `make footage SOURCE=footage`"
+        footage_without_a_site, "footage", r"a\.avi is missing or damaged", "run `make footage SOURCE=footage DATA="
     ),
     "the data folder cannot be read": Trouble(broken(_loop), "data folder", "cannot be used: Too many levels", "correct --data"),
     "the data folder is a file": Trouble(broken(_file_for_folder), "data folder", "is no folder", "correct --data"),

@@ -59,7 +59,7 @@ INSTALLATION: dict[str, Trouble] = {
         installed(lambda house: gather_installation(house.data, PAGE)),
         "kernels",
         r"(\d+) of \1 numerical kernels are not compiled",
-        "run `make kernels`",
+        "run `make kernels DATA=",
         "warning",
     ),
     "a package cannot be imported": Trouble(
