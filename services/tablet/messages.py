@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from models.messages.trouble import MachineCode
+from models.messages.trouble import CalibrationCode, MachineCode
 
 CameraState = Literal["starting", "ok", "slow", "lost", "unknown"]
 ProcessState = Literal["starting", "ok", "degraded", "failed", "silent", "gone", "unknown"]
@@ -118,6 +118,9 @@ class Status(_Model):
     recording: Recording | None
     replay: Replay | None
     machine: MachineStatus | None
+    calibration: Annotated[
+        CalibrationCode | None, Field(description="what speaks against the calibration, or against which camera is which")
+    ]
     cameras: list[CameraStatus]
     processes: list[ProcessStatus]
     clients: int

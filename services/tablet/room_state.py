@@ -8,7 +8,7 @@ from collections import deque
 
 from models.messages.health import Health, Restarts, SupervisorHealth
 from models.messages.motion import JointState, Motion
-from models.messages.trouble import MACHINE_CODES
+from models.messages.trouble import CALIBRATION_CODES, MACHINE_CODES, CalibrationCode
 from models.process import EDGE, RECORDER, REPLAY, ROUTER, Playback, process_name
 from services.support.machine_troubles import machine_troubles
 from services.tablet.camera_state import SILENT_AFTER_NS, HeardHealth, camera_status, known
@@ -116,6 +116,7 @@ class RoomState:
             pupil=fusion.pupil if fusion else "unknown",
             cpu_load=known(fusion.cpu_load) if fusion else None,
             machine=self._machine(now_ns),
+            calibration=_calibration(fusion_health),
             recording=self._recording(now_ns),
             replay=self._replay(now_ns),
             cameras=[self._camera(name, name in used, now_ns) for name in self._cameras],
@@ -224,3 +225,8 @@ class RoomState:
 
 def _nearest_rank(ordered: list[float], share: float) -> float:
     return ordered[max(math.ceil(share * len(ordered)) - 1, 0)]
+
+
+def _calibration(fusion: Health | None) -> CalibrationCode | None:
+    found = {trouble.code for trouble in fusion.troubles} if fusion else set()
+    return next((code for code in CALIBRATION_CODES if code in found), None)

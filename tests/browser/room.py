@@ -45,6 +45,7 @@ class Scene:
         given_up: processes, by their names on the bus, that the supervisor starts no more.
         fresh_hz: inferences a second of every camera.
         pupil: what fusion says about the pupil.
+        troubles: what fusion says is wrong.
         machine: what the supervisor measured of the machine.
         recorded_s: length of the lesson that is being recorded; None while none is.
     """
@@ -56,6 +57,7 @@ class Scene:
     given_up: frozenset[str] = frozenset()
     fresh_hz: float = 14.6
     pupil: str = "found"
+    troubles: tuple[Trouble, ...] = ()
     machine: MachineHealth = MACHINE
     recorded_s: float | None = None
 
@@ -164,7 +166,10 @@ class Room:
         recorder = RecorderHealth(lesson, "7b, throwing", scene.recorded_s or 0.0, 2_500_000, 0)
         self._say(self._fusion, Health("recorder", 98, now_ns, "ok", (), 0.01, 60.0, recorder=recorder))
         if "fusion" not in scene.given_up:
-            self._say(self._fusion, Health("fusion", 99, now_ns, "ok", (), 0.21, 186.0, fusion=fusion))
+            self._say(
+                self._fusion,
+                Health("fusion", 99, now_ns, "degraded" if scene.troubles else "ok", scene.troubles, 0.21, 186.0, fusion=fusion),
+            )
 
     def _say(self, bus: MemoryBus, health: Health) -> None:
         bus.publish(topics.health(health.process), codec.encode(health))

@@ -10,6 +10,7 @@ from playwright.sync_api import Browser, Page, expect
 
 from models.arrays import Float
 from models.messages.motion import JointState
+from models.messages.trouble import Trouble
 from models.skeleton import coco
 from services.tablet import process
 from tests.browser.room import CAMERAS, MACHINE, Room, with_scene
@@ -313,3 +314,15 @@ def test_a_teacher_is_told_of_the_machine_only_when_it_matters_and_the_technicia
     expect(message.get_by_text("The box is too hot")).to_be_visible()
     with_scene(room, machine=MACHINE)
     expect(message.get_by_text("The box is too hot")).to_have_count(0)
+
+
+def test_a_teacher_is_told_of_cameras_that_are_exchanged_and_the_technician_which(page: Page, room: Room) -> None:
+    exchanged = Trouble("cameras_exchanged", "cam01 and cam02 seem to be exchanged", "exchange their plugs")
+    with_scene(room, speed=0.0, troubles=(exchanged,))
+    open_live(page, room)
+    message = page.locator(".messages")
+    expect(message.get_by_text("Two cameras seem to be exchanged")).to_be_visible()
+    page.get_by_role("button", name="Details").click()
+    expect(page.locator("#details").get_by_text(exchanged.words)).to_be_visible()
+    with_scene(room, troubles=())
+    expect(message.get_by_text("Two cameras seem to be exchanged")).to_have_count(0)

@@ -254,6 +254,17 @@ def test_fusion_that_is_silent_or_gone_knows_nothing_of_the_pupil() -> None:
     assert state.status(T0, 0).pupil == "unknown"
 
 
+def test_what_speaks_against_the_calibration_is_passed_on_while_fusion_says_so() -> None:
+    state = room()
+    fusion = FusionHealth(30.0, 4.0, 0.8, 0, {}, "found")
+    said = (Trouble("camera_unheard", "no word from b"), Trouble("cameras_exchanged", "a and b seem to be exchanged"))
+    assert state.status(T0, 0).calibration is None
+    state.receive_health(Health("fusion", 2, T0, "degraded", said, 0.2, 100.0, fusion=fusion), T0)
+    assert state.status(T0, 0).calibration == "cameras_exchanged"
+    state.receive_health(Health("fusion", 2, T0 + S, "degraded", said[:1], 0.2, 100.0, fusion=fusion), T0 + S)
+    assert state.status(T0 + S, 0).calibration is None
+
+
 def test_failures_that_the_supervisor_reports_are_passed_on() -> None:
     state = room()
     state.receive_health(

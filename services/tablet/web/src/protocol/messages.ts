@@ -7,6 +7,7 @@ export type CameraStatus = components['schemas']['CameraStatus'];
 export type ProcessStatus = components['schemas']['ProcessStatus'];
 export type MachineStatus = components['schemas']['MachineStatus'];
 export type MachineCode = MachineStatus['troubles'][number];
+export type CalibrationCode = NonNullable<Status['calibration']>;
 export type Pong = components['schemas']['Pong'];
 export type Ping = components['schemas']['Ping'];
 export type Ack = components['schemas']['Ack'];

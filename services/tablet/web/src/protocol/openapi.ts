@@ -244,6 +244,11 @@ export interface components {
             recording: components["schemas"]["Recording"] | null;
             replay: components["schemas"]["Replay"] | null;
             machine: components["schemas"]["MachineStatus"] | null;
+            /**
+             * Calibration
+             * @description what speaks against the calibration, or against which camera is which
+             */
+            calibration: ("cameras_exchanged" | "cameras_disagree" | "camera_moved") | null;
             /** Cameras */
             cameras: components["schemas"]["CameraStatus"][];
             /** Processes */

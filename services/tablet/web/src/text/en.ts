@@ -2,7 +2,7 @@
 
 import type { LateCause } from '../connection/lateness';
 import type { Phase } from '../connection/phase';
-import type { CameraStatus, MachineCode, ProcessStatus } from '../protocol/messages';
+import type { CalibrationCode, CameraStatus, MachineCode, ProcessStatus } from '../protocol/messages';
 
 const COUNTS = ['no camera', 'one', 'two', 'three', 'four', 'five', 'six', 'seven', 'eight'];
 
@@ -86,6 +86,13 @@ const troubles: Record<MachineCode, string> = {
   clock_set: 'The clock of the box was set',
 };
 
+/** What speaks against the calibration; until somebody has seen to it, the figure may be wrong. */
+const calibration: Record<CalibrationCode, string> = {
+  cameras_exchanged: 'Two cameras seem to be exchanged – the figure may be wrong',
+  cameras_disagree: 'The cameras do not agree with one another – the figure may be wrong',
+  camera_moved: 'A camera was moved or exchanged – the figure may be wrong',
+};
+
 /** The networks' names mean nothing to a teacher; the technician reads them in the details. */
 const ways: Record<string, string> = { thunder: 'exact', lightning: 'fast' };
 
@@ -164,6 +171,7 @@ export const text = {
   },
 
   troubles,
+  calibration: { ...calibration, remedy: 'Details say which cameras and what to do.' },
 
   readings: {
     title: 'Measurements',
