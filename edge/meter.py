@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from models.messages.health import CameraHealth, Health
-from models.messages.trouble import Trouble
+from models.messages.trouble import SOURCE_CODES, Trouble
 from models.process import Resources
 
 PERIOD_NS = 1_000_000_000
@@ -70,7 +70,7 @@ class Meter:
     def report(self, t_now_ns: int, target_hz: float, network: str, troubles: tuple[Trouble, ...], used: Resources) -> Health:
         """The health message of the time since the last report; counting begins anew. `troubles` are those of other parts."""
         seconds = max(1e-9, (t_now_ns - self.t_report_ns) * 1e-9)
-        everything = (*self._troubles(), *troubles)
+        everything = (*self._troubles(excused=any(each.code in SOURCE_CODES for each in troubles)), *troubles)
         self.silence_told = self._silent()
         camera = CameraHealth(
             camera=self.camera,
@@ -112,10 +112,11 @@ class Meter:
     def _silent(self) -> bool:
         return self._silence_ns() >= max(SILENT_NS, 2 * self.spacing_ns)
 
-    def _troubles(self) -> tuple[Trouble, ...]:
+    def _troubles(self, *, excused: bool) -> tuple[Trouble, ...]:
+        """What these counts show; that it seems silent is no news of a camera that is `excused`, since the reason is known."""
         camera = f"camera '{self.camera}'"
         found = []
-        if self._silent():
+        if self._silent() and not excused:
             words = f"{camera} has shown nothing for {self._silence_ns() * 1e-9:.0f} s"
             found.append(Trouble("camera_silent", words, "check its cable, its power and its file; unplug it and plug it in again"))
         if self.bright is not None and self.bright < BLACK_LEVEL:

@@ -24,7 +24,7 @@ from models.config.site import CameraConfig
 from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.control import ViewControl
-from models.messages.trouble import CameraCode, Trouble
+from models.messages.trouble import Trouble
 from models.process import ProcessContext, Subscription
 
 GRAB_TIMEOUT_S = 0.2
@@ -215,10 +215,7 @@ class EdgeLoop:
         now_ns = self._clock.now_ns()
         if not self._meter.is_due(now_ns):
             return
-        found: tuple[tuple[CameraCode, str], ...] = (
-            ("camera_faulty", self._source.problem),
-            ("network_missing", self._library.problem),
-        )
-        troubles = tuple(Trouble(code, words) for code, words in found if words)
+        network = Trouble("network_missing", self._library.problem) if self._library.problem else None
+        troubles = tuple(trouble for trouble in (self._source.problem, network) if trouble is not None)
         health = self._meter.report(now_ns, control.rate_hz, self._library.current, troubles, self._context.resources())
         self._context.bus.publish(topics.health(self._context.name), codec.encode(health))

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from edge.cameras.source import Clock, Frame, Source, SourceError
 from models.arrays import UInt8
 from models.config.site import FaultConfig
+from models.messages.trouble import Trouble
 
 SECOND_NS = 1_000_000_000
 
@@ -94,7 +95,7 @@ class FaultySource:
         return self._source.skipped
 
     @property
-    def problem(self) -> str:
+    def problem(self) -> Trouble | None:
         """See `Source.problem`."""
         return self._source.problem
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from models.arrays import UInt8
+from models.messages.trouble import Trouble
 
 
 class Frame(Protocol):
@@ -48,8 +49,8 @@ class Source(Protocol):
         """Pictures, since the first grab, that nobody grabbed because a newer one was already there."""
 
     @property
-    def problem(self) -> str:
-        """What is wrong with the camera now, in a line for people; empty if nothing is known to be."""
+    def problem(self) -> Trouble | None:
+        """What is wrong with the camera now; None if nothing is known to be."""
 
     def grab(self, timeout_s: float) -> Frame | None:
         """Wait for a picture newer than the last one grabbed and return the newest there is; None after `timeout_s`.

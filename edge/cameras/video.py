@@ -109,9 +109,9 @@ class VideoSource:
         return self._skipped
 
     @property
-    def problem(self) -> str:
+    def problem(self) -> None:
         """See `Source.problem`: a file has none once it is read."""
-        return ""
+        return None
 
     def grab(self, timeout_s: float) -> JpegFrame | None:
         """See `Source.grab`."""

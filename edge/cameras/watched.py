@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 from edge.cameras.source import Clock, Frame, Source, SourceError
 from models.errors import UserError
+from models.messages.trouble import SourceCode, Trouble
 
 SECOND_NS = 1_000_000_000
 AHEAD_NS = SECOND_NS // 10
@@ -16,10 +17,17 @@ BEHIND_NS = SECOND_NS
 """A picture that arrives so late is of no use, and rather its clock is wrong."""
 OPEN_AGAIN_AFTER_NS = SECOND_NS // 2
 """So long a camera may show nothing but impossible times; then it is opened again, which sets its clock anew."""
+STUCK_AFTER_NS = 5 * SECOND_NS
+"""So long a camera may show the same picture; then it is opened again, which ends what its driver hangs in."""
 _FIRST_WAIT_NS = SECOND_NS // 10
 _LONGEST_WAIT_NS = SECOND_NS
 _REMEMBERED_NS = SECOND_NS
 """A trouble is told for so long after it was over, that a report once a second has it."""
+_REMEDIES: dict[SourceCode, str] = {
+    "camera_ended": "check its cable, its power and its file",
+    "camera_repeats": "if it stays so, unplug it and plug it in again",
+    "camera_clock": "if it stays so, unplug it and plug it in again",
+}
 _BREATH_NS = 5_000_000
 """Between two pictures that are refused: a driver that repeats one may not even wait."""
 
@@ -46,12 +54,12 @@ class WatchedSource:
         self._wrong_since_ns: int | None = None
         self._wait_ns = _FIRST_WAIT_NS
         self._open_at_ns = 0
-        self._problem = ""
+        self._problem: Trouble | None = None
         self._problem_ns = 0
         try:
             self._source = open_source()
         except SourceError as error:
-            self._gone(str(error))
+            self._ended(str(error))
 
     @property
     def skipped(self) -> int:
@@ -59,10 +67,10 @@ class WatchedSource:
         return self._skipped_before + (self._source.skipped if self._source is not None else 0)
 
     @property
-    def problem(self) -> str:
+    def problem(self) -> Trouble | None:
         """See `Source.problem`."""
         recent = self._clock.now_ns() - self._problem_ns < _REMEMBERED_NS
-        return self._problem if recent or self._source is None else ""
+        return self._problem if recent or self._source is None else None
 
     def grab(self, timeout_s: float) -> Frame | None:
         """See `Source.grab`; None also for a picture that was refused, and while there is nothing open."""
@@ -72,7 +80,7 @@ class WatchedSource:
         try:
             frame = self._source.grab(timeout_s)
         except SourceError as error:
-            self._gone(str(error))
+            self._ended(str(error))
             return None
         return None if frame is None else self._checked(frame)
 
@@ -85,29 +93,40 @@ class WatchedSource:
     def _checked(self, frame: Frame) -> Frame | None:
         now_ns = self._clock.now_ns()
         identity = frame.epoch, frame.index, frame.t_mid_ns
+        # First: a picture that is shown for seconds has an old time, and its camera's clock is right all the same.
+        if self._last is not None and identity[:2] == self._last[:2]:
+            return self._repeated(now_ns)
         ahead_ns = frame.t_mid_ns - now_ns
         if ahead_ns > AHEAD_NS or ahead_ns < -BEHIND_NS:
-            self._trouble(f"its clock is {abs(ahead_ns) * 1e-9:.1f} s {'ahead' if ahead_ns > 0 else 'behind'}", now_ns)
-            self._wrong_since_ns = now_ns if self._wrong_since_ns is None else self._wrong_since_ns
-            if now_ns - self._wrong_since_ns > OPEN_AGAIN_AFTER_NS:
-                self._gone(self._problem)
+            words = f"its clock is {abs(ahead_ns) * 1e-9:.1f} s {'ahead' if ahead_ns > 0 else 'behind'}"
+            self._refused("camera_clock", words, OPEN_AGAIN_AFTER_NS, now_ns)
             return None
-        if self._last is not None and (identity[:2] == self._last[:2] or identity[2] <= self._last[2]):
-            self._trouble("it shows the same picture again", now_ns)
-            self._clock.sleep_until(now_ns + _BREATH_NS)
-            return None
+        if self._last is not None and identity[2] <= self._last[2]:
+            return self._repeated(now_ns)
         self._last, self._wrong_since_ns, self._wait_ns = identity, None, _FIRST_WAIT_NS
         return frame
 
-    def _trouble(self, what: str, now_ns: int) -> None:
-        self._problem, self._problem_ns = f"camera '{self._camera}': {what}", now_ns
+    def _repeated(self, now_ns: int) -> None:
+        self._refused("camera_repeats", "it shows the same picture again", STUCK_AFTER_NS, now_ns)
+        self._clock.sleep_until(now_ns + _BREATH_NS)
 
-    def _gone(self, why: str) -> None:
+    def _refused(self, code: SourceCode, what: str, patience_ns: int, now_ns: int) -> None:
+        """A picture cannot be what it claims; if only such come for longer than `patience_ns`, the source is opened again."""
+        words = f"camera '{self._camera}': {what}"
+        self._problem, self._problem_ns = Trouble(code, words, _REMEDIES[code]), now_ns
+        self._wrong_since_ns = now_ns if self._wrong_since_ns is None else self._wrong_since_ns
+        if now_ns - self._wrong_since_ns > patience_ns:
+            self._gone(code, words)
+
+    def _ended(self, why: str) -> None:
+        self._gone("camera_ended", why)
+
+    def _gone(self, code: SourceCode, why: str) -> None:
         """The source has ended, or shall: open it again in a while, which grows until a picture is good."""
         now_ns = self._clock.now_ns()
         self._skipped_before = self.skipped
         self.close()
-        self._problem, self._problem_ns = f"{why.removesuffix('; it is opened again')}; it is opened again", now_ns
+        self._problem, self._problem_ns = Trouble(code, f"{why}; it is opened again", _REMEDIES[code]), now_ns
         self._open_at_ns = now_ns + self._wait_ns
         self._wait_ns = min(2 * self._wait_ns, _LONGEST_WAIT_NS)
         self._wrong_since_ns = None
@@ -120,7 +139,7 @@ class WatchedSource:
         try:
             self._source = self._open_source()
         except (SourceError, UserError) as error:
-            self._gone(str(error))
+            self._ended(str(error))
             return False
         # A device counts its pictures from its opening; its times go on.
         self._last = None if self._last is None else (-1, -1, self._last[2])

@@ -7,7 +7,10 @@ import msgspec
 MachineCode = Literal["disk_full", "disk_low", "memory_low", "hot", "throttled", "clock_set"]
 MACHINE_CODES: tuple[MachineCode, ...] = get_args(MachineCode)
 """The worst first."""
-CameraCode = Literal["camera_silent", "camera_dark", "camera_faulty", "pictures_damaged", "network_missing", "plans_refused"]
+SourceCode = Literal["camera_ended", "camera_repeats", "camera_clock"]
+SOURCE_CODES: tuple[SourceCode, ...] = get_args(SourceCode)
+"""Why nothing that a camera sends can be used: each is the cause where the camera seems to be silent."""
+CameraCode = Literal[SourceCode, "camera_silent", "camera_dark", "pictures_damaged", "network_missing", "plans_refused"]
 CalibrationCode = Literal["cameras_exchanged", "cameras_disagree", "camera_moved"]
 CALIBRATION_CODES: tuple[CalibrationCode, ...] = get_args(CalibrationCode)
 """What the cameras see is not what the calibration says."""

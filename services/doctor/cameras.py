@@ -13,6 +13,8 @@ _REMEDIES: dict[CameraReason, str] = {
     "sparse": "the box is too slow for this many cameras: use fewer, or a faster box",
 }
 _ELSE = "see what else is found here; if it stays so, start the box anew"
+_TOLD: frozenset[CameraReason] = frozenset({"degraded", "ended", "repeats", "clock"})
+"""What a camera's process tells with its own words and remedies."""
 BUSY_REASONS: frozenset[CameraReason] = frozenset({"behind", "backlog", "sparse"})
 """Slowness that the box causes, not the camera."""
 
@@ -35,7 +37,7 @@ def judge_camera(name: str, health: Health, now_ns: int) -> list[Finding]:
     level: Level = "fault" if status.state == "lost" else "warning"
     known_by = "what its process measured in the last second"
     where = f"camera '{name}'"
-    if status.reason == "degraded" and health.troubles:
+    if status.reason in _TOLD and health.troubles:
         return [Finding(level, where, each.words, "its health on the bus", each.remedy or _ELSE) for each in health.troubles]
     remedy = _REMEDIES.get(status.reason, _ELSE)
     return [Finding(level, where, f"{where} {_words(status, health)}", known_by, remedy)]

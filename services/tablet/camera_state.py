@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from models.messages.health import CameraHealth, Health
+from models.messages.trouble import TroubleCode
 from services.tablet.messages import CameraReason, CameraState, CameraStatus
 from services.tablet.presence import Presence
 
@@ -18,6 +19,8 @@ SPARSE_HZ = 8.0
 BACKLOG_MS = 250.0
 """A frame older than this when its turn came shows a figure that visibly trails."""
 
+_CAUSES: dict[TroubleCode, CameraReason] = {"camera_ended": "ended", "camera_repeats": "repeats", "camera_clock": "clock"}
+"""What a process may know of why its camera shows nothing."""
 _GIVEN_UP: tuple[CameraState, CameraReason] = ("lost", "given_up")
 
 
@@ -80,21 +83,24 @@ def _judge(heard: HeardHealth | None, presence: Presence, now_ns: int) -> tuple[
         return ("starting", "starting") if says_so or young else ("lost", "never_seen")
     if silent:
         return "lost", "silent"
-    return _judge_rates(heard.health.camera, heard.health.state == "degraded")
+    codes = (trouble.code for trouble in heard.health.troubles)
+    cause = next((_CAUSES[code] for code in codes if code in _CAUSES), None)
+    return _judge_rates(heard.health.camera, cause, heard.health.state == "degraded")
 
 
-def _judge_rates(camera: CameraHealth, degraded: bool) -> tuple[CameraState, CameraReason]:
+def _judge_rates(camera: CameraHealth, cause: CameraReason | None, degraded: bool) -> tuple[CameraState, CameraReason]:
     if not all(map(math.isfinite, (camera.source_hz, camera.fresh_hz, camera.target_hz, camera.backlog_ms))):
         return "slow", "degraded"  # It works, but how well cannot be known.
-    if camera.source_hz <= 0:
-        return "lost", "no_frames"
+    # One that is opened again and again shows a picture each time, and is lost all the same.
+    if camera.source_hz <= 0 or (cause is not None and camera.source_hz < SPARSE_HZ):
+        return "lost", cause or "no_frames"
     if camera.target_hz <= 0:
         return "ok", "resting"
     faults: tuple[tuple[bool, CameraReason], ...] = (
         (camera.backlog_ms > BACKLOG_MS, "backlog"),
         (camera.fresh_hz < BEHIND_SHARE * camera.target_hz, "behind"),
         (camera.fresh_hz < SPARSE_HZ, "sparse"),
-        (degraded, "degraded"),
+        (degraded, cause or "degraded"),
     )
     reason = next((reason for present, reason in faults if present), None)
     return ("slow", reason) if reason else ("ok", "none")

@@ -22,6 +22,9 @@ CameraReason = Literal[
     "process_gone",  # its process ended
     "silent",  # its process is there and says nothing
     "failed",  # its process says that it failed; see `detail`
+    "ended",  # its source ended, and is opened again and again
+    "repeats",  # it sends the same picture again and again
+    "clock",  # its pictures have impossible times
     "no_frames",  # the source delivers nothing
     "degraded",  # its process works less well than wished; see `detail`
     "behind",  # fewer inferences than the governor asked for

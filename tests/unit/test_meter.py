@@ -4,7 +4,7 @@ import pytest
 
 from edge.meter import Meter
 from models.messages.health import Health
-from models.messages.trouble import Trouble
+from models.messages.trouble import SOURCE_CODES, SourceCode, Trouble
 from models.process import Resources
 
 SECOND_NS = 1_000_000_000
@@ -64,6 +64,16 @@ def test_what_is_wrong_is_said(silent_s: int, damaged: int, others: tuple[Troubl
     health = counted.report(now_ns, 10.0, "thunder", others, USED)
     assert (health.state, told(health)) == ("degraded", expected)
     assert counted.report(now_ns, 10.0, "thunder", (), USED).state == ("degraded" if silent_s else "ok")
+
+
+@pytest.mark.parametrize("code", SOURCE_CODES)
+def test_a_camera_whose_fault_is_known_is_not_said_to_be_silent_as_well(code: SourceCode) -> None:
+    counted = meter()
+    counted.in_vain(10 * SECOND_NS)
+    health = counted.report(10 * SECOND_NS, 10.0, "thunder", (Trouble(code, "it is ill"),), USED)
+    assert told(health) == [(code, "it is ill")]
+    assert health.camera is not None
+    assert health.camera.source_hz == 0
 
 
 def test_a_process_that_did_not_look_does_not_blame_the_camera() -> None:

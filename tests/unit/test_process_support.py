@@ -44,7 +44,7 @@ def test_health_is_published_on_the_process_own_topic_and_due_once_a_second() ->
     subscription = bus.subscribe(topics.ALL_HEALTH, keep=2)
     reporter = HealthReporter("edge-a", bus, lambda: Resources(0.5, 100.0), lambda: now_ns)
     assert reporter.due()
-    said = reporter.report("degraded", (Trouble("camera_faulty", "slow"),))
+    said = reporter.report("degraded", (Trouble("camera_ended", "slow"),))
     delivery = subscription.receive(0.0)
     assert delivery is not None
     assert delivery.topic == topics.health("edge-a")

@@ -6,7 +6,7 @@ import pytest
 
 from models.messages.health import CameraHealth, FusionHealth, Health, RecorderHealth, ReplayHealth, Restarts, SupervisorHealth
 from models.messages.motion import CameraUse, JointState, Motion
-from models.messages.trouble import Trouble
+from models.messages.trouble import Trouble, TroubleCode
 from models.process import Playback
 from models.skeleton import coco
 from services.tablet.messages import CameraStatus
@@ -45,7 +45,7 @@ def health(
     reason: str = "",
 ) -> Health:
     camera = CameraHealth("a", source_hz, fresh_hz, target_hz, 3, backlog_ms, "thunder", {})
-    troubles = (Trouble("camera_faulty", reason),) if reason else ()
+    troubles = (Trouble("pictures_damaged", reason),) if reason else ()
     return Health("edge-a", 1, T0, state, troubles, 0.3, 200.0, camera=camera)  # type: ignore[arg-type]
 
 
@@ -95,6 +95,26 @@ def test_a_process_that_gets_ready_is_starting_for_as_long_as_it_says_so() -> No
     (process,) = state.status(T0 + 61 * S, 0).processes
     assert (process.state, process.reason) == ("starting", "it compiles")
     assert judged(state, T0 + 64 * S) == ("lost", "never_seen")
+
+
+@pytest.mark.parametrize(("code", "reason"), [("camera_repeats", "repeats"), ("camera_clock", "clock"), ("camera_ended", "ended")])
+@pytest.mark.parametrize("source_hz", [0.0, 0.6])
+def test_a_camera_whose_fault_is_known_is_lost_for_that_and_not_for_its_cable(
+    code: TroubleCode, reason: str, source_hz: float
+) -> None:
+    state = room()
+    rates = CameraHealth("a", source_hz, source_hz, 15.0, 3, 20.0, "thunder", {})
+    troubles = (Trouble("network_missing", "Lightning instead of Thunder"), Trouble(code, "camera 'a': is ill", "cure it"))
+    state.receive_health(Health("edge-a", 1, T0, "degraded", troubles, 0.3, 200.0, camera=rates), T0 + S)
+    assert judged(state, T0 + S) == ("lost", reason), "also if it shows a picture whenever it is opened again"
+
+
+def test_a_camera_that_was_ill_for_a_moment_is_slow_and_says_why() -> None:
+    state = room()
+    rates = CameraHealth("a", 26.0, 14.0, 15.0, 3, 20.0, "thunder", {})
+    troubles = (Trouble("camera_repeats", "camera 'a': it shows the same picture again", "cure it"),)
+    state.receive_health(Health("edge-a", 1, T0, "degraded", troubles, 0.3, 200.0, camera=rates), T0 + S)
+    assert judged(state, T0 + S) == ("slow", "repeats")
 
 
 def test_a_camera_that_falls_silent_is_lost_and_shows_no_rates() -> None:

@@ -43,8 +43,20 @@ CAMERAS: dict[str, Trouble] = {
     "a camera is gone": Trouble(
         running(until_told("edge-b", "degraded"), more=fault("b", "end"), edge=_EDGE),
         "camera 'b'",
-        "camera 'b' is silent: it delivers no pictures .*",
+        "camera 'b' has ended; it is opened again",
         "check its cable",
+    ),
+    "a camera repeats its picture": Trouble(
+        running(until_told("edge-b", "degraded"), more=fault("b", "repeat"), edge=_EDGE),
+        "camera 'b'",
+        "camera 'b': it shows the same picture again",
+        "unplug it and plug it in again",
+    ),
+    "a camera's clock is wrong": Trouble(
+        running(until_told("edge-b", "degraded"), more=fault("b", "jump"), edge=_EDGE),
+        "camera 'b'",
+        "camera 'b': its clock is 5.0 s ahead",
+        "unplug it and plug it in again",
     ),
     "a camera's lens is covered": Trouble(
         running(until_told("edge-b", "degraded"), edge=_EDGE, film=small_edge.write_black_film),

@@ -44,7 +44,7 @@ export interface components {
              * Reason
              * @enum {string}
              */
-            reason: "none" | "starting" | "never_seen" | "unheard" | "given_up" | "process_gone" | "silent" | "failed" | "no_frames" | "degraded" | "behind" | "backlog" | "sparse" | "resting";
+            reason: "none" | "starting" | "never_seen" | "unheard" | "given_up" | "process_gone" | "silent" | "failed" | "ended" | "repeats" | "clock" | "no_frames" | "degraded" | "behind" | "backlog" | "sparse" | "resting";
             /**
              * Detail
              * @description the process's own words, for the technician
