@@ -6,6 +6,7 @@ from pathlib import Path
 
 import typer
 
+from models.errors import UserError
 from services.cli.duration import clock
 from services.cli.progress import ProgressLine
 from services.lesson import origin
@@ -20,9 +21,10 @@ def check_lesson(file: Path) -> bool:
     """Replay a lesson as fast as it goes and say what came out; whether all motions were equal.
 
     Raises:
-        UserError: the file is no lesson that can be read and replayed.
+        UserError: the file is no lesson that can be read and replayed, or there is nothing in it to compare.
     """
     with open_lesson(file) as lesson, ProgressLine() as progress:
+        lesson.require_entries()
         header = lesson.header
         changed = what_changed(header)
         # First of all: whoever reads on shall know what to expect.
@@ -32,6 +34,8 @@ def check_lesson(file: Path) -> bool:
         began_s = time.monotonic()
         items = replay(lesson.parts(), header.rig(), configuration(header.preset))
         found = compare(_watched(items, header.started_ns, progress))
+    if found.compared == 0:
+        raise UserError(f"lesson {file} holds no motion that could be compared: it ended too early; check a longer one")
     typer.echo(report(found, header, changed, time.monotonic() - began_s))
     return found.first is None
 

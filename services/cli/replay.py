@@ -43,6 +43,7 @@ def play(file: Path, data: Path, page: TabletConfig, speed: float, *, loop: bool
         # What is wrong is told now, and not when pupils wait for what follows.
         configuration(header.preset)
         header.rig()
+        lesson.require_entries()
         lesson.summary()
     _require_port(page)
     playback = Playback(str(file.resolve()), header.title, header.started_ns + header.wall_minus_monotonic_ns, speed, loop)

@@ -19,7 +19,7 @@ from mcap.records import Header, Metadata
 from models.errors import UserError
 from models.messages.lesson import Entry
 from services.lesson import lesson_header
-from services.lesson.layout import MARK, PART_SUFFIX, PROFILE, Mark, entry
+from services.lesson.layout import MARK, PART_SUFFIX, PROFILE, SUFFIX, Mark, entry
 from services.lesson.lesson_header import HeaderError, LessonHeader, NewerFormatError
 from services.lesson.mcap_records import DamageError, OpenChunk, open_chunk, parse, walk
 
@@ -106,6 +106,12 @@ class Lesson:
     def summary(self) -> LessonSummary:
         """Read the whole file, and so check all of it; UserError as for `parts`."""
         return summarise(self.header, self.parts())
+
+    def require_entries(self) -> None:
+        """Raise UserError if nothing was recorded: the recording ended before its first part. And as for `parts`."""
+        if not any(part.entries for part in self.parts()):
+            remedy = f"remove it with 'kinebox lessons delete {self.path.name.removesuffix(SUFFIX)}'"
+            raise UserError(f"lesson {self.path} is empty: its recording ended before anything was recorded; {remedy}")
 
     def span_ns(self) -> tuple[int, int]:
         """CLOCK_MONOTONIC of the first and the last entry, having checked the whole file; UserError as for `parts`."""

@@ -95,7 +95,8 @@ class Player:
         self._bus.declare_alive(topics.alive(self._context.name))
         while not self._context.stop.is_set():
             self._play(replay(self._lesson.parts(), self._rig, self._config))
-            if not self._playback.loop:
+            # A round without an entry, and thus without a wait of its own, must not spin.
+            if not self._playback.loop or not self._wait_until(self._clock_ns() + round(_ROUND_S * SECOND_NS)):
                 return
 
     def _play(self, items: Iterator[Replayed]) -> None:

@@ -2,7 +2,7 @@
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -17,12 +17,13 @@ from models.process import Playback, ProcessContext, Resources, Subscription
 from services.bus.memory import MemoryRouter
 from services.fusion.config import PRESETS
 from services.lesson import playback
+from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_reader import open_lesson
 from services.lesson.playback import LONGEST_PAUSE_NS, Pace, moved
 from services.lesson.replay import difference, replay
 from tests.integration.waiting import DEADLINE_S, until
 from tests.synthetic.gym import Gym
-from tests.synthetic.gym_lesson import TITLE, write_gym_lesson
+from tests.synthetic.gym_lesson import TITLE, gym_header, write_gym_lesson
 
 S = 1_000_000_000
 GYM = Gym(seconds=3.0, seed=5)
@@ -73,7 +74,9 @@ class Played:
 
 
 @contextmanager
-def playing(file: Path, *, loop: bool, speed: float = 8.0) -> Iterator[tuple[Played, threading.Thread]]:
+def playing(
+    file: Path, *, loop: bool, speed: float = 8.0, beat: Callable[[], None] = lambda: None
+) -> Iterator[tuple[Played, threading.Thread]]:
     router, stop = MemoryRouter(), threading.Event()
     cameras = [CameraConfig(name=name, kind="video", path="none.avi") for name in GYM.rig.names]
     context = ProcessContext(
@@ -87,6 +90,7 @@ def playing(file: Path, *, loop: bool, speed: float = 8.0) -> Iterator[tuple[Pla
         stop=stop,
         resources=lambda: Resources(0.1, 100.0),
         playback=Playback(str(file), TITLE, 0, speed, loop),
+        beat=beat,
     )
     played = Played(router)
     thread = threading.Thread(target=playback.main, args=(context,), daemon=True)
@@ -137,6 +141,21 @@ def test_a_loop_begins_again_with_the_same_figure(lesson: Path) -> None:
     first, second = [motion for motion in played.smooth if motion.sequence == 5][:2]
     assert second.t_ns > first.t_ns
     assert difference(moved(first, second.t_ns - first.t_ns, 0), second) == ""
+
+
+def test_a_lesson_without_an_entry_is_no_reason_to_spin_or_to_fall_silent(tmp_path: Path) -> None:
+    empty = LessonWriter.create(tmp_path, "empty", gym_header(GYM)).finish()
+    beats = 0
+
+    def beat() -> None:
+        nonlocal beats
+        beats += 1
+
+    with playing(empty, loop=True, beat=beat) as (played, _):
+        until(lambda: len([health for health in played.collect().healths if health.replay is not None]) >= 2, "two words of it")
+        began_s, before = time.monotonic(), beats
+        until(lambda: beats > before + 3, "further beats")
+        assert beats - before <= 2 + (time.monotonic() - began_s) / 0.05, "each round waits"
 
 
 def test_without_a_lesson_the_process_says_how_it_is_started(tmp_path: Path) -> None:

@@ -67,6 +67,30 @@ def write_altered(folder: Path, **header: str) -> tuple[Path, Motion]:
     return writer.finish(), motion
 
 
+@pytest.mark.parametrize("parts", [0, 1], ids=["no part", "a part without entries"])
+@pytest.mark.parametrize("words", [("--check",), ("--once",), ()])
+def test_a_lesson_in_which_nothing_was_recorded_is_refused(tmp_path: Path, parts: int, words: tuple[str, ...]) -> None:
+    writer = LessonWriter.create(tmp_path, "empty", gym_header(GYM))
+    for sequence in range(parts):
+        writer.append(FusionLog(T0_NS, sequence, ()))
+    file = writer.finish()
+    port = str(free_port())
+    refused = run("-m", "services.cli.main", "replay", str(file), "--data", str(tmp_path), "--port", port, *words)
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert f"lesson {file} is empty" in refused.stderr
+    assert "kinebox lessons delete empty" in refused.stderr
+
+
+def test_a_lesson_that_ended_before_its_first_motion_is_not_said_to_be_equal(tmp_path: Path) -> None:
+    log = [entry for entry in entries(GYM.events(), GYM.rig) if entry.kind != "motion"][:3]
+    writer = LessonWriter.create(tmp_path, "short", gym_header(GYM))
+    for part in parts(log, T0_NS):
+        writer.append(part)
+    checked = check(writer.finish())
+    assert (checked.returncode, checked.stdout) == (2, "")
+    assert "holds no motion that could be compared" in checked.stderr
+
+
 def test_one_bit_of_one_motion_is_found_and_the_motion_is_named(tmp_path: Path) -> None:
     file, motion = write_altered(tmp_path)
     checked = check(file)
