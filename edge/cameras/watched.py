@@ -95,14 +95,16 @@ class WatchedSource:
         identity = frame.epoch, frame.index, frame.t_mid_ns
         # First: a picture that is shown for seconds has an old time, and its camera's clock is right all the same.
         if self._last is not None and identity[:2] == self._last[:2]:
-            return self._repeated(now_ns)
+            self._repeated(now_ns)
+            return None
         ahead_ns = frame.t_mid_ns - now_ns
         if ahead_ns > AHEAD_NS or ahead_ns < -BEHIND_NS:
             words = f"its clock is {abs(ahead_ns) * 1e-9:.1f} s {'ahead' if ahead_ns > 0 else 'behind'}"
             self._refused("camera_clock", words, OPEN_AGAIN_AFTER_NS, now_ns)
             return None
         if self._last is not None and identity[2] <= self._last[2]:
-            return self._repeated(now_ns)
+            self._repeated(now_ns)
+            return None
         self._last, self._wrong_since_ns, self._wait_ns = identity, None, _FIRST_WAIT_NS
         return frame
 
