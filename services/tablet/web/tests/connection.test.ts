@@ -135,6 +135,7 @@ describe('the phase', () => {
     ],
     ['a pupil who left', { stale: true, nobody: true }, 'waiting'],
     ['frames that are all too late', { stale: true, dropping: true }, 'late'],
+    ['frames that were too late before their maker died', { dropping: true, maker: 'interrupted' }, 'stale'],
   ])('with %s', (_name, change, phase) => {
     expect(phaseOf({ ...live, ...change })).toBe(phase);
   });

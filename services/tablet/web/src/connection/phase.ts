@@ -37,7 +37,7 @@ export function phaseOf(inputs: PhaseInputs): Exclude<Phase, 'unable'> {
   if (!inputs.connected) return inputs.everConnected || inputs.failures >= PATIENCE ? 'offline' : 'connecting';
   if (inputs.maker === 'failed') return 'failed';
   if (inputs.hasFigure && !inputs.stale && inputs.maker === 'works') return 'live';
-  if (inputs.dropping) return 'late';
+  if (inputs.dropping && inputs.maker === 'works') return 'late';
   if (inputs.nobody) return 'waiting';
   return inputs.hasFigure ? 'stale' : 'searching';
 }
