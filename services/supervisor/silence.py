@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 
 LIMIT_S = 3.0
 """Health comes once a second; whoever misses three has hung."""
-BEAT_LIMIT_S = 1.0
-"""Beats come five times a second from those who beat at all; five missed in a row are no delay of a busy CPU."""
+BEAT_LIMIT_S = 1.5
+"""Beats come five times a second from those who beat at all; seven missed in a row are no delay of a busy CPU."""
 START_LIMIT_S = 120.0
 """Who was never heard has hung after this long; a box without compiled kernels takes a minute to start. A spare that was
 ready has done all that before, and has no longer than who was heard."""

@@ -1,7 +1,7 @@
 """Heartbeats: a sign of life several times a second from the loop of a process that must not hang, and its last one.
 
-Health, once a second, takes measuring; a beat takes nothing, so it can come often enough for a hung process to be missed within a
-second. It must be the loop itself that beats: a thread of its own would beat on while the loop hangs. A
+Health, once a second, takes measuring; a beat takes nothing, so it can come often enough for a hung process to be missed within two
+seconds. It must be the loop itself that beats: a thread of its own would beat on while the loop hangs. A
 process that ends of itself says so with its last beat: to leave the bus and to tidy up takes a while, on a loaded CPU seconds.
 """
 

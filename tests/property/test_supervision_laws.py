@@ -149,7 +149,7 @@ def test_a_supervisor_that_was_held_up_blames_nobody() -> None:
 
 
 BEATING = ("fusion", "tablet")
-BEAT_LATENESS_S = st.fixed_dictionaries({name: st.lists(st.floats(0, 0.3), min_size=60, max_size=60) for name in BEATING})
+BEAT_LATENESS_S = st.fixed_dictionaries({name: st.lists(st.floats(0, 0.8), min_size=60, max_size=60) for name in BEATING})
 
 
 def beats_after(lateness_s: dict[str, list[float]], hangs: dict[str, float]) -> dict[str, float]:
@@ -177,12 +177,12 @@ def test_nobody_who_beats_is_taken_for_hung(lateness_s: dict[str, list[float]]) 
 
 @settings(max_examples=30)
 @given(BEAT_LATENESS_S, st.sampled_from(BEATING), st.floats(2, 8))
-def test_who_beats_is_missed_within_little_more_than_a_second_and_nobody_is_blamed_for_it(
+def test_who_beats_is_missed_within_little_more_than_the_limit_and_nobody_is_blamed_for_it(
     lateness_s: dict[str, list[float]], name: str, at_s: float
 ) -> None:
     found = beats_after(lateness_s, {name: at_s})
     assert set(found) == {name}
-    assert BEAT_LIMIT_S - 0.5 <= found[name] - at_s <= BEAT_LIMIT_S + 0.2
+    assert BEAT_LIMIT_S - 1.1 <= found[name] - at_s <= BEAT_LIMIT_S + 0.2
 
 
 @given(st.sampled_from(NAMES))
