@@ -14,6 +14,7 @@ from models.errors import UserError
 from services.cli.duration import clock
 from services.lesson.index import NAME, LessonIndex, LessonRow
 from services.lesson.layout import PART_SUFFIX, SUFFIX
+from services.lesson.readable_names import readable
 from services.logs.printable import printable
 from services.support.site_files import read_site
 
@@ -118,5 +119,5 @@ def _entry(folder: Path, row: LessonRow) -> dict[str, object]:
         "gaps": row.gaps,
         "segments": row.segments,
         "problem": row.problem,
-        "file": str(folder / f"{row.lesson}{suffix}"),
+        "file": readable(str(folder / f"{row.lesson}{suffix}")),
     }

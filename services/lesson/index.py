@@ -2,21 +2,30 @@
 
 import sqlite3
 from collections.abc import Iterator
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, fields
 from pathlib import Path
+from typing import Annotated
 
+import msgspec
 import structlog
+from msgspec import Meta
 
 from models.errors import UserError
 from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import LessonWriter, is_being_written
 from services.lesson.lesson_reader import open_lesson, read_header
+from services.lesson.readable_names import readable
 from services.lesson.survey import survey
 
 NAME = "index.sqlite"
 _VERSION = 2
 _PATIENCE_S = 5.0
 """How long to wait for another process that writes."""
+
+_LATEST_NS = 2**63 - 1
+"""Of a file's date; a file system may know later ones, SQLite and calendars do not."""
+_Seconds = Annotated[float, Meta(ge=-2e10, le=2e10)]
+"""Some centuries; every time that a lesson can hold."""
 
 log = structlog.get_logger()
 
@@ -26,7 +35,7 @@ class LessonRow:
     """One lesson of the list.
 
     Attributes:
-        lesson: its name, which is the file's without suffix.
+        lesson: its name, which is the file's without suffix; `readable` if that is not UTF-8.
         title: what people call it.
         started_s: seconds since 1970 (UTC).
         seconds: from the first entry to the last; while it is being recorded, since its start.
@@ -40,8 +49,8 @@ class LessonRow:
 
     lesson: str
     title: str
-    started_s: float
-    seconds: float
+    started_s: _Seconds
+    seconds: _Seconds
     bytes: int
     gaps: int
     segments: int
@@ -50,8 +59,8 @@ class LessonRow:
     changed_ns: int
 
 
-_CREATE = """
-CREATE TABLE IF NOT EXISTS lessons (
+_NAMES = tuple(field.name for field in fields(LessonRow))
+_TABLE = """lessons (
     lesson TEXT NOT NULL PRIMARY KEY,
     title TEXT NOT NULL,
     started_s REAL NOT NULL,
@@ -63,7 +72,8 @@ CREATE TABLE IF NOT EXISTS lessons (
     problem TEXT NOT NULL,
     changed_ns INTEGER NOT NULL
 )"""
-_SELECT = "SELECT lesson, title, started_s, seconds, bytes, gaps, segments, state, problem, changed_ns FROM lessons"
+_SELECT = "SELECT * FROM lessons"
+_CREATED = "SELECT sql FROM sqlite_master WHERE name = 'lessons'"
 _REPLACE = "INSERT OR REPLACE INTO lessons VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"
 
 
@@ -131,15 +141,18 @@ class LessonIndex:
 
     def _found(self, known: dict[str, LessonRow]) -> Iterator[LessonRow]:
         for path in sorted(self.folder.glob(f"*{SUFFIX}")) + sorted(self.folder.glob(f"*{PART_SUFFIX}")):
+            lesson = readable(name_of(path))
             try:
                 status = path.stat()
             except FileNotFoundError:
                 continue  # Finished or removed meanwhile.
-            lesson = name_of(path)
-            row = known.get(lesson)
+            except OSError as error:
+                yield LessonRow(lesson, "", 0.0, 0.0, 0, 0, 0, "damaged", _unreadable(path, error), 0)
+                continue
+            row, size, changed_ns = known.get(lesson), status.st_size, min(max(status.st_mtime_ns, -_LATEST_NS), _LATEST_NS)
             # A recorder that dies does not change its file.
-            if row is None or row.state == "recording" or (row.bytes, row.changed_ns) != (status.st_size, status.st_mtime_ns):
-                row = _read(path, lesson, status.st_size, status.st_mtime_ns)
+            if row is None or row.state == "recording" or (row.bytes, row.changed_ns) != (size, changed_ns):
+                row = _read(path, lesson, size, changed_ns)
             yield row
 
     def _connect(self) -> sqlite3.Connection:
@@ -181,6 +194,7 @@ def name_of(path: Path) -> str:
 
 def _connect(database: str) -> sqlite3.Connection:
     connection = sqlite3.connect(database, timeout=_PATIENCE_S)
+    connection.text_factory = _text
     try:
         connection.execute("PRAGMA journal_mode = WAL")
         # After a power cut the last changes may be missing: the files are read again then.
@@ -188,7 +202,9 @@ def _connect(database: str) -> sqlite3.Connection:
         (version,) = connection.execute("PRAGMA user_version").fetchone()
         if version not in (0, _VERSION):
             raise sqlite3.DatabaseError(f"version {version}")
-        connection.execute(_CREATE)
+        connection.execute(f"CREATE TABLE IF NOT EXISTS {_TABLE}")
+        if connection.execute(_CREATED).fetchone() != (f"CREATE TABLE {_TABLE}",):
+            raise sqlite3.DatabaseError("another's table of lessons")
         connection.execute(f"PRAGMA user_version = {_VERSION}")
         list(_rows(connection))
     except BaseException:
@@ -198,8 +214,19 @@ def _connect(database: str) -> sqlite3.Connection:
 
 
 def _rows(connection: sqlite3.Connection) -> Iterator[LessonRow]:
+    """Every row; sqlite3.DatabaseError if one is none of ours, since SQLite lets anything into any column."""
     for values in connection.execute(_SELECT):
-        yield LessonRow(*values)
+        try:
+            yield msgspec.convert(dict(zip(_NAMES, values, strict=True)), LessonRow)
+        except msgspec.ValidationError as error:
+            raise sqlite3.DatabaseError(f"a row of another kind: {error}") from error
+
+
+def _text(data: bytes) -> str:
+    try:
+        return data.decode()
+    except UnicodeDecodeError as error:
+        raise sqlite3.DatabaseError("a text that is not UTF-8") from error
 
 
 def _read(path: Path, lesson: str, size: int, changed_ns: int) -> LessonRow:
@@ -221,8 +248,11 @@ def _read(path: Path, lesson: str, size: int, changed_ns: int) -> LessonRow:
                 summary = opened.summary()
             seconds, gaps, segments = summary.seconds, summary.gaps, summary.segments
     except UserError as error:
-        state, problem = "damaged", str(error)
+        state, problem = "damaged", readable(str(error))
     except OSError as error:
-        state = "damaged"
-        problem = f"lesson {path} cannot be read: {error.strerror}; correct its owner and rights, or mend its disk"
+        state, problem = "damaged", _unreadable(path, error)
     return LessonRow(lesson, title, started_s, seconds, size, gaps, segments, state, problem, changed_ns)
+
+
+def _unreadable(path: Path, error: OSError) -> str:
+    return readable(f"lesson {path} cannot be read: {error.strerror}; correct its owner and rights, or mend its disk")

@@ -9,6 +9,8 @@ FORMAT = 1
 """Version of the file's layout; a reader refuses one that is newer."""
 NAME = "kinebox.lesson"
 _CHECK = "crc32"
+_LATEST_NS = 2**63
+"""Of a clock or between two, in 64 bits. What is beyond that is none, and no date can be made of it."""
 
 
 class HeaderError(ValueError):
@@ -70,12 +72,24 @@ class LessonHeader:
         values = dict(metadata)
         if values.pop(_CHECK, None) != _checksum(values):
             raise HeaderError("its header differs from its check sum")
-        if int(values.pop("format")) > FORMAT:
-            raise NewerFormatError(f"it is of KineBox {values.get('kinebox', '?')}")
         try:
-            return cls(**{field.name: field.type(values[field.name]) for field in fields(cls)})  # type: ignore[operator]
-        except (KeyError, ValueError) as error:
+            newer = int(values.pop("format")) > FORMAT
+            if not newer:
+                return cls(**{field.name: _value(field.name, field.type, values[field.name]) for field in fields(cls)})  # type: ignore[arg-type]
+        except KeyError as error:
             raise HeaderError(f"its header lacks {error}") from error
+        except ValueError as error:
+            raise HeaderError(f"its header is none: {error}") from error
+        raise NewerFormatError(f"it is of KineBox {values.get('kinebox', '?')}")
+
+
+def _value(name: str, kind: object, text: str) -> str | int:
+    if kind is str:
+        return text
+    value = int(text)
+    if abs(value) >= _LATEST_NS:
+        raise ValueError(f"{name} is no time")
+    return value
 
 
 def _checksum(values: dict[str, str]) -> str:

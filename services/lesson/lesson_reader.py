@@ -22,6 +22,7 @@ from services.lesson import lesson_header
 from services.lesson.layout import MARK, PART_SUFFIX, PROFILE, SUFFIX, Mark, entry
 from services.lesson.lesson_header import HeaderError, LessonHeader, NewerFormatError
 from services.lesson.mcap_records import DamageError, OpenChunk, open_chunk, parse, walk
+from services.lesson.readable_names import is_readable, readable
 
 _RECOVER = (
     f"give it a name that ends with '{PART_SUFFIX}', in the folder of lessons, and start KineBox: all before that is recovered, "
@@ -189,8 +190,11 @@ def read_header(path: Path, file: BinaryIO) -> LessonHeader:
 
     Raises:
         NewerLessonError: this KineBox does not know the file's format.
-        UserError: it has no header that can be read.
+        UserError: it has no header that can be read, or a name that is not UTF-8.
     """
+    if not is_readable(path.name):
+        name = readable(path.name).removesuffix(PART_SUFFIX).removesuffix(SUFFIX)
+        raise UserError(f"the name of lesson {name} is not UTF-8; rename the file")
     foreign = UserError(f"{path} is no lesson of KineBox; name a file that 'kinebox lessons' lists")
     file.seek(0)
     try:

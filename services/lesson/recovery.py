@@ -16,6 +16,7 @@ from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_reader import NewerLessonError, read_header
+from services.lesson.readable_names import is_readable, readable
 from services.lesson.survey import survey
 from services.support.sync import sync_folder
 
@@ -36,6 +37,9 @@ def recover(folder: Path, run_ns: int) -> LessonWriter | None:
     """
     goes_on: LessonWriter | None = None
     for path in sorted(folder.glob(f"*{PART_SUFFIX}")):
+        if not is_readable(path.name):
+            log.warning("an unfinished lesson waits for a name in UTF-8", lesson=readable(path.name), remedy="rename the file")
+            continue
         try:
             writer = _reopened(path)
         except OSError as error:

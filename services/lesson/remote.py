@@ -128,6 +128,9 @@ def join(endpoint: str) -> Bus:
 def require_title(title: str) -> None:
     """Raise UserError if no lesson can be called that."""
     try:
+        title.encode()
         LessonRequest("start", title)
+    except UnicodeEncodeError as error:
+        raise UserError("--title: it holds bytes that are not UTF-8; type it anew") from error
     except ValueError as error:
         raise UserError(f"--title: {error}; shorten it") from error

@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -158,6 +159,7 @@ def test_a_disk_too_full_is_told_with_the_key_that_says_how_full(tmp_path: Path)
     [
         (("--for", "3"), "--for: '3' is no length of time"),
         (("--title", "x" * 81), "--title: a title has at most 80 characters"),
+        (("--title", os.fsdecode(b"\xff")), "--title: it holds bytes that are not UTF-8"),
         (("--stop", "--detach"), "--stop goes with no other option"),
         (("--detach", "--for", "3m"), "--detach goes with no other option"),
     ],
@@ -179,3 +181,21 @@ def test_the_list_tells_what_is_wrong_with_a_lesson(tmp_path: Path) -> None:
     assert [line.split()[0] for line in listed.stdout.splitlines()[1:]] == ["foreign", "empty"]
     assert "damaged" in listed.stdout
     assert "foreign: " in listed.stderr
+
+
+def test_one_name_that_is_no_text_and_one_impossible_date_leave_the_list_whole(tmp_path: Path) -> None:
+    folder = tmp_path / os.fsdecode(b"\xe4") / "lessons"
+    folder.mkdir(parents=True)
+    LessonWriter.create(folder, "good", gym_header(Gym())).finish()
+    LessonWriter.create(folder, os.fsdecode(b"t\xfcrnen"), gym_header(Gym())).finish()
+    LessonWriter.create(folder, "late", replace(gym_header(Gym()), started_ns=10**30)).finish()
+    listed = kinebox("lessons", "--data", str(folder.parent))
+    assert listed.returncode == 0, listed.stderr
+    states = {line.split()[0]: "damaged" in line for line in listed.stdout.splitlines()[1:]}
+    assert states == {"good": False, "t\\xfcrnen": True, "late": True}
+    assert "the name of lesson t\\xfcrnen is not UTF-8; rename the file" in listed.stderr
+    told = json.loads(kinebox("lessons", "--data", str(folder.parent), "--json").stdout)
+    assert {row["lesson"] for row in told} == set(states)
+    removed = kinebox("lessons", "delete", os.fsdecode(b"t\xfcrnen"), "--data", str(folder.parent), "--yes")
+    assert removed.returncode == 0, removed.stderr
+    assert len(list(folder.glob("*.mcap"))) == 2

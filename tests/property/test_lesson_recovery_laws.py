@@ -2,6 +2,7 @@
 
 import copy
 import errno
+import os
 from collections.abc import Iterator
 from functools import cache
 from io import BytesIO
@@ -13,6 +14,7 @@ import pytest
 import zstandard
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from structlog.testing import capture_logs
 
 from models.errors import UserError
 from models.messages.lesson import FusionLog
@@ -244,6 +246,24 @@ def test_an_unfinished_lesson_of_a_newer_kinebox_waits_for_the_update(tmp_path: 
     assert recover(tmp_path, run_ns=0) is None
     with open_lesson(tmp_path / f"newer{SUFFIX}") as lesson:
         assert as_logged(list(lesson.parts())) == [PARTS[0]]
+
+
+def test_an_unfinished_lesson_whose_name_is_no_text_stays_and_stops_nobody(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        writer = LessonWriter.create(tmp_path, name, header())
+        writer.append(part(BEGIN_NS, 0))
+        writer.close()
+    odd = (tmp_path / f"a{PART_SUFFIX}").rename(tmp_path / f"{os.fsdecode(bytes([0xFE]))}{PART_SUFFIX}")
+    content = odd.read_bytes()
+    with capture_logs() as logged:
+        assert recover(tmp_path, run_ns=0) is None
+    assert (tmp_path / "b.mcap").is_file()
+    assert odd.read_bytes() == content
+    (told,) = [line for line in logged if line["log_level"] == "warning"]
+    assert (told["lesson"], told["remedy"]) == (rf"\xfe{PART_SUFFIX}", "rename the file")
+    odd.rename(tmp_path / f"a{PART_SUFFIX}")
+    assert recover(tmp_path, run_ns=0) is None
+    assert (tmp_path / "a.mcap").is_file()
 
 
 def test_recovery_unpacks_every_chunk_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

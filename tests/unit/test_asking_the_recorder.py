@@ -8,7 +8,7 @@ from models.messages.health import Health, RecorderHealth
 from models.messages.trouble import Trouble
 from models.process import Bus
 from services.bus.memory import MemoryRouter
-from services.lesson.remote import Remote
+from services.lesson.remote import Remote, require_title
 
 ENDED = Trouble("not_recording", "lesson 7b ended: No space left on device", "make room on the disk")
 
@@ -48,3 +48,9 @@ def test_where_nothing_was_recorded_nothing_is_ended() -> None:
     remote, box = asked(said(""))
     assert remote.stop() is None
     box.close()
+
+
+@pytest.mark.parametrize("title", ["\udcff", "7b\udc80, throwing"])
+def test_a_title_that_is_no_text_is_refused_before_anybody_is_asked(title: str) -> None:
+    with pytest.raises(UserError, match="--title: it holds bytes that are not UTF-8; type it anew"):
+        require_title(title)

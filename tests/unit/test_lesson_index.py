@@ -1,10 +1,12 @@
 """The list of lessons: what is in the folder, however the index was lost, broken or out of date."""
 
+import datetime as dt
 import errno
 import os
 import sqlite3
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -84,6 +86,80 @@ def test_an_index_of_another_version_is_made_anew(tmp_path: Path) -> None:
         connection.execute("PRAGMA user_version = 99")
     connection.close()
     assert [row.lesson for row in LessonIndex(tmp_path).lessons()] == ["a"]
+
+
+def spoil(folder: Path, *statements: str) -> None:
+    with sqlite3.connect(folder / index.NAME) as connection:
+        for statement in statements:
+            connection.execute(statement)
+    connection.close()
+
+
+@pytest.mark.parametrize(
+    "statements",
+    [
+        ["UPDATE lessons SET title = x'ff00'"],
+        ["UPDATE lessons SET title = CAST(x'ff' AS TEXT)"],
+        ["UPDATE lessons SET bytes = 'many'"],
+        ["UPDATE lessons SET started_s = 9e999"],
+        ["UPDATE lessons SET seconds = 1e300"],
+        ["DROP TABLE lessons", "CREATE TABLE lessons (otherwise TEXT)", "PRAGMA user_version = 0"],
+        ["DROP TABLE lessons", "CREATE VIEW lessons AS SELECT 1", "PRAGMA user_version = 0"],
+    ],
+)
+def test_an_index_that_holds_what_no_list_does_is_made_anew_once(tmp_path: Path, statements: list[str]) -> None:
+    record(tmp_path, "a")
+    known = LessonIndex(tmp_path).lessons()
+    spoil(tmp_path, *statements)
+    assert LessonIndex(tmp_path).lessons() == known
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(index, "open_lesson", None)
+        assert LessonIndex(tmp_path).lessons() == known, "the second time it is not read again"
+
+
+NO_TEXT = os.fsdecode(b"t\xfcrnen")
+
+
+@pytest.mark.parametrize("suffix", [".mcap", PART_SUFFIX])
+def test_a_lesson_whose_files_name_is_no_text_is_listed_with_what_to_do(tmp_path: Path, suffix: str) -> None:
+    record(tmp_path, "good")
+    file = record(tmp_path, "other", finish=suffix == ".mcap")
+    file.rename(tmp_path / f"{NO_TEXT}{suffix}")
+    for _ in range(2):
+        rows = {row.lesson: row for row in LessonIndex(tmp_path).lessons()}
+        assert {name: row.state for name, row in rows.items()} == {"good": "finished", "t\\xfcrnen": "damaged"}
+        assert "the name of lesson t\\xfcrnen is not UTF-8; rename the file" in rows["t\\xfcrnen"].problem
+
+
+@pytest.mark.parametrize("seconds", [10**11, -(10**11)])
+def test_a_damaged_file_of_an_impossible_date_is_listed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: int) -> None:
+    (tmp_path / "a.mcap").write_bytes(b"nothing")
+    real = Path.stat
+
+    def stat(path: Path, *, follow_symlinks: bool = True) -> os.stat_result | SimpleNamespace:
+        status = real(path, follow_symlinks=follow_symlinks)
+        return SimpleNamespace(st_size=7, st_mtime_ns=seconds * SECOND_NS) if path.name == "a.mcap" else status
+
+    monkeypatch.setattr(Path, "stat", stat)
+    (row,) = LessonIndex(tmp_path).lessons()
+    assert row.state == "damaged"
+    assert dt.datetime.fromtimestamp(row.started_s, tz=dt.UTC).year in {1677, 2262}
+
+
+def test_a_link_in_a_circle_is_listed_as_damaged(tmp_path: Path) -> None:
+    (tmp_path / "a.mcap").symlink_to(tmp_path / "a.mcap")
+    (row,) = LessonIndex(tmp_path).lessons()
+    assert row.state == "damaged"
+    assert "cannot be read: Too many levels of symbolic links" in row.problem
+
+
+@pytest.mark.parametrize("field", ["started_ns", "wall_minus_monotonic_ns", "run_ns"])
+@pytest.mark.parametrize("value", [10**30, -(10**30), 10**400], ids=["late", "early", "beyond all floats"])
+def test_a_lesson_of_an_impossible_time_is_listed_as_damaged(tmp_path: Path, field: str, value: int) -> None:
+    LessonWriter.create(tmp_path, "a", replace(header(), **{field: value})).finish()  # type: ignore[arg-type]
+    (row,) = LessonIndex(tmp_path).lessons()
+    assert row.state == "damaged"
+    assert f"{field} is no time" in row.problem
 
 
 def test_the_lesson_that_is_being_recorded_is_listed_as_such_and_when_its_recorder_died_as_unfinished(tmp_path: Path) -> None:
