@@ -24,7 +24,6 @@ def check_lesson(file: Path) -> bool:
         UserError: the file is no lesson that can be read and replayed, or there is nothing in it to compare.
     """
     with open_lesson(file) as lesson, ProgressLine() as progress:
-        lesson.require_entries()
         header = lesson.header
         changed = what_changed(header)
         # First of all: whoever reads on shall know what to expect.
@@ -33,6 +32,7 @@ def check_lesson(file: Path) -> bool:
         progress.show("getting ready; the first time on a machine, kernels are compiled for a minute or two")
         began_s = time.monotonic()
         items = replay(lesson.parts(), header.rig(), configuration(header.preset))
+        lesson.require_entries()
         found = compare(_watched(items, header.started_ns, progress))
     if found.compared == 0:
         raise UserError(f"lesson {file} holds no motion that could be compared: it ended too early; check a longer one")
