@@ -14,8 +14,8 @@ from models.errors import UserError
 from models.process import Playback
 from services.cli.process import ProcessOrder, run_process
 from services.cli.user_error import exit_with_line
+from services.logs import of_process
 from services.supervisor.lifeline import end_with_parent
-from services.support import logs
 
 
 def main() -> None:
@@ -41,8 +41,8 @@ def main() -> None:
         arguments.spare,
         arguments.playback,
     )
-    logs.configure(order.name)
-    logs.log_what_ends_us()
+    of_process.configure(order.name)
+    of_process.log_what_ends_us()
     try:
         run_process(order)
     except UserError as error:

@@ -5,9 +5,9 @@ import difflib
 from pathlib import Path
 
 from services.logs.printable import printable
-from services.support import site_toml
-from services.support.site_files import read_file, read_site
-from services.support.site_migration import MigratedText, migrate_file, migrated_text
+from services.site_file import rendering
+from services.site_file.migration import MigratedText, migrate_file, migrated_text
+from services.site_file.reading import read_file, read_site
 
 
 def check(file: Path) -> str:
@@ -19,7 +19,7 @@ def check(file: Path) -> str:
 def show(file: Path) -> str:
     """The site file with every value that it leaves to its default."""
     site, _ = read_site(file)
-    return site_toml.render(site)
+    return rendering.render(site)
 
 
 def migrate(file: Path, dry_run: bool) -> str:

@@ -35,7 +35,7 @@ def record(
     """Have the running box record a lesson, and end it on Ctrl-C."""
     from services.cli import record as recording  # noqa: PLC0415
     from services.cli.duration import parse_duration  # noqa: PLC0415
-    from services.support.site_files import read_site  # noqa: PLC0415
+    from services.site_file.reading import read_site  # noqa: PLC0415
 
     if (stop and (detach or title or length)) or (detach and length):
         given = "--stop" if stop else "--detach"

@@ -16,7 +16,7 @@ from services.lesson.index import NAME, LessonIndex, LessonRow
 from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.readable_names import readable
 from services.logs.printable import printable
-from services.support.site_files import read_site
+from services.site_file.reading import read_site
 
 _PIPE_WIDTH = 200
 

@@ -23,7 +23,7 @@ from services.logs.readable import as_json, readable
 from services.logs.reader import Line
 from services.logs.record import LEVELS, time_text
 from services.logs.redaction import redacted
-from services.support.site_files import read_file
+from services.site_file.reading import read_file
 
 _LOOK_AGAIN_S = 0.2
 _AGO = re.compile(r"[\dhms]*[hms]")

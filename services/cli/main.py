@@ -83,11 +83,11 @@ def process(
 
     os.environ.update(process_environment(data))  # before numpy and numba are imported
     from services.cli.process import ProcessOrder, run_process  # noqa: PLC0415
-    from services.support import logs  # noqa: PLC0415
+    from services.logs import of_process  # noqa: PLC0415
 
     order = ProcessOrder(name, site, data, camera, start_ns)
-    logs.configure(order.name)
-    logs.log_what_ends_us()
+    of_process.configure(order.name)
+    of_process.log_what_ends_us()
     run_process(order)
 
 

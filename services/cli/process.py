@@ -9,11 +9,11 @@ from pathlib import Path
 from models.errors import UserError
 from models.process import EDGE, ROUTERS, SPARE_READY, Bus, Playback, ProcessContext, process_name
 from services.cli.parts import find_process, load_process
+from services.site_file.reading import read_site
 from services.support.getting_ready import getting_ready
 from services.support.health import ResourceMeter
 from services.support.heartbeat import Heartbeat
 from services.support.signals import stop_on_signals
-from services.support.site_files import read_site
 
 
 @dataclass(frozen=True)

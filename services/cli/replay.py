@@ -14,10 +14,10 @@ from services.cli.check_lesson import what_changed
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.lesson_reader import open_lesson
 from services.lesson.replay import configuration
+from services.site_file.migration import migrated_text
+from services.site_file.rendering import render
 from services.supervisor.supervise import supervise
 from services.support.listening import listen
-from services.support.site_migration import migrated_text
-from services.support.site_toml import render
 
 _HERE = "127.0.0.1"
 _CALIBRATION = "rig.toml"

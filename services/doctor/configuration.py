@@ -9,7 +9,7 @@ from models.config.site import Site
 from models.errors import UserError
 from models.inspection import Inspected, Inspection
 from services.doctor.finding import Examined, Fact, Finding, fault_of
-from services.support.site_files import read_site
+from services.site_file.reading import read_site
 
 
 @dataclass(frozen=True)

@@ -14,10 +14,10 @@ from services.lesson.folder_lock import lock
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.recorder import Recorder
 from services.lesson.recovery import recover
+from services.site_file.rendering import render
 from services.support.getting_ready import getting_ready
 from services.support.health import HealthReporter
 from services.support.machine import clocks_ns
-from services.support.site_toml import render
 from services.support.version import kinebox_version
 
 KEEP = 64

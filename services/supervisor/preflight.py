@@ -10,8 +10,8 @@ from models.config.site import Site
 from models.errors import UserError
 from models.process import Check
 from services.bus.endpoint import split_endpoint
+from services.site_file.reading import read_site
 from services.support.listening import listen
-from services.support.site_files import read_site
 
 
 def check_everything(site_file: Path, data: Path, checks: Iterable[Check]) -> tuple[Site, Rig]:

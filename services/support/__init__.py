@@ -1,1 +1,1 @@
-"""What every process needs: health, logs, measuring."""
+"""What every process needs of its machine and of the bus: health, heartbeats, signals, CPU, memory, versions."""

@@ -20,8 +20,8 @@ from models.process import Bus, ProcessContext, Resources, Subscription
 from services.fusion.process import FusionLoop
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_header import LessonHeader
+from services.site_file.rendering import render
 from services.support.cpu import CpuMeter
-from services.support.site_toml import render
 from tests.integration.waiting import DEADLINE_S, until
 from tests.synthetic.gym import ring_rig
 from tests.synthetic.person import Person as Pupil

@@ -28,8 +28,8 @@ from services.lesson.index import LessonIndex
 from services.lesson.lesson_reader import LessonPart, open_lesson
 from services.lesson.process import RecorderLoop
 from services.lesson.replay import compare, replay
+from services.site_file.rendering import render
 from services.support.health import ResourceMeter
-from services.support.site_toml import render
 from tests.integration.fusion_room import RIG, SITE, Cameras, fusion
 from tests.integration.waiting import DEADLINE_S, free_port, until
 

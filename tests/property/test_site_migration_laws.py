@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from models.config.migrations import migrate
 from models.config.site import SITE_VERSION, decode_site
 from models.errors import UserError
-from services.support.site_migration import migrated_text
+from services.site_file.migration import migrated_text
 
 KEYS = st.sampled_from(["name", "kind", "path", "rate_hz", "offset_ms", "version", "cameras", "x-y", "shutter_delay"])
 SCALARS = st.booleans() | st.integers(-(2**62), 2**62) | st.floats(allow_nan=False) | st.text(max_size=5)

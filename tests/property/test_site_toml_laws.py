@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from models.config.site import SITE_VERSION, CameraConfig, Site, TabletConfig, decode_site
-from services.support.site_toml import render
+from services.site_file.rendering import render
 
 # All that TOML can hold: halves of surrogate pairs are no characters.
 TEXTS = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=80)

@@ -13,7 +13,7 @@ from models.messages.trouble import Trouble
 from services.lesson import origin
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_header import LessonHeader
-from services.support.site_toml import render
+from services.site_file.rendering import render
 from services.support.version import kinebox_version
 from tests.synthetic.gym import T0_NS, Gym
 from tests.synthetic.lesson_log import entries, parts

@@ -20,10 +20,10 @@ from models.messages.health import Health
 from models.messages.trouble import Trouble
 from models.process import Resources
 from services.bus.memory import MemoryRouter
+from services.logs import of_process
 from services.supervisor.child import ChildSpec, name_of
 from services.supervisor.journal import Journal
 from services.supervisor.page import addresses
-from services.support import logs
 from services.support.health import HealthReporter, ResourceMeter
 from tests.installed import ROOT
 
@@ -67,7 +67,7 @@ def test_a_process_measures_its_own_cpu_and_memory() -> None:
 
 
 def test_our_logs_and_the_libraries_come_out_alike(stream: io.StringIO) -> None:
-    logs.configure("edge-a", stream)
+    of_process.configure("edge-a", stream)
     structlog.get_logger().info("ours", rate_hz=15)
     logging.getLogger("library").warning("theirs %d", 7)
     ours, theirs = (msgspec.json.decode(line) for line in stream.getvalue().splitlines())
@@ -79,7 +79,7 @@ def test_our_logs_and_the_libraries_come_out_alike(stream: io.StringIO) -> None:
 
 
 def test_a_traceback_stays_within_one_line(stream: io.StringIO) -> None:
-    logs.configure("edge-a", stream)
+    of_process.configure("edge-a", stream)
     try:
         raise RuntimeError("broken")
     except RuntimeError:
@@ -101,7 +101,9 @@ ENDINGS = {
 @pytest.mark.parametrize("ending", ENDINGS)
 def test_what_ends_a_process_is_one_record_in_the_log(tmp_path: Path, ending: str) -> None:
     program, event = ENDINGS[ending]
-    program = f"from services.support import logs; logs.configure('edge-a'); logs.log_what_ends_us()\n{program}"
+    program = (
+        f"from services.logs import of_process as logs; of_process.configure('edge-a'); of_process.log_what_ends_us()\n{program}"
+    )
     said = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False).stderr
     journal = Journal(tmp_path, io.StringIO())
     for line in said.splitlines():

@@ -14,9 +14,9 @@ import pytest
 from models.config.migrations import FIRST_VERSION, MIGRATIONS
 from models.config.site import SITE_VERSION, decode_site, site_version
 from models.errors import UserError
-from services.support import site_migration
-from services.support.site_files import read_file
-from services.support.site_migration import migrate_file, migrated_text, rewritten
+from services.site_file import migration
+from services.site_file.migration import migrate_file, migrated_text, rewritten
+from services.site_file.reading import read_file
 from tests.installed import ROOT
 
 GOLDEN = sorted((ROOT / "tests/golden/sites").glob("*.toml"))
@@ -118,8 +118,8 @@ FULL_DISK = """
 import datetime as dt, resource, sys
 from pathlib import Path
 from models.errors import UserError
-from services.support.site_files import read_file
-from services.support.site_migration import migrate_file
+from services.site_file.reading import read_file
+from services.site_file.migration import migrate_file
 resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
 try:
     migrate_file(Path(sys.argv[1]), dt.datetime.now(dt.UTC))
@@ -146,7 +146,7 @@ def test_what_a_failing_disk_left_is_told_as_it_is(old: Path, monkeypatch: pytes
             raise OSError(errno.EIO, "Input/output error")
         synced.append(folder)
 
-    monkeypatch.setattr(site_migration, "sync_folder", sync_folder)
+    monkeypatch.setattr(migration, "sync_folder", sync_folder)
     with pytest.raises(UserError) as refused:
         migrate_file(old, NOW)
     told = str(refused.value)

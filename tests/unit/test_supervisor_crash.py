@@ -12,9 +12,9 @@ from models.errors import UserError
 from services.logs.files import log_folder
 from services.logs.reader import LogReader
 from services.logs.record import LogRecord
+from services.site_file.reading import read_site
 from services.supervisor import supervise as module
 from services.supervisor.supervise import Supervisor, supervise
-from services.support.site_files import read_site
 from tests.installed import ROOT
 
 

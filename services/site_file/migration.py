@@ -17,7 +17,7 @@ from tomlkit.items import AbstractTable, AoT, Array, SingleKey
 from models.config.migrations import migrate
 from models.config.site import decode_site, site_version
 from models.errors import UserError
-from services.support.site_files import read_file
+from services.site_file.reading import read_file
 from services.support.sync import sync_folder
 
 Table = dict[str, Any]
