@@ -101,10 +101,10 @@ ENDINGS = {
 @pytest.mark.parametrize("ending", ENDINGS)
 def test_what_ends_a_process_is_one_record_in_the_log(tmp_path: Path, ending: str) -> None:
     program, event = ENDINGS[ending]
-    program = (
-        f"from services.logs import of_process as logs; of_process.configure('edge-a'); of_process.log_what_ends_us()\n{program}"
-    )
-    said = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False).stderr
+    set_up = "from services.logs.of_process import configure, log_what_ends_us; configure('edge-a'); log_what_ends_us()"
+    said = subprocess.run(
+        [sys.executable, "-c", f"{set_up}\n{program}"], cwd=ROOT, capture_output=True, text=True, check=False
+    ).stderr
     journal = Journal(tmp_path, io.StringIO())
     for line in said.splitlines():
         journal.child_said("edge-a", line)
