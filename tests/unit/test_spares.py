@@ -19,7 +19,7 @@ from tests.integration.waiting import until
 
 TABLET = ChildSpec("tablet")
 WAITS = "import sys; sys.stdin.readline()"
-IS_READY = f"import sys; print({SPARE_READY!r}, flush=True); sys.stdin.readline()"
+IS_READY = f"import sys; sys.stdout.write({SPARE_READY!r} + '\\n'); sys.stdout.flush(); sys.stdin.readline()"
 
 
 class Room:
