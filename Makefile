@@ -16,7 +16,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks footage web kernels body check-body lock clean distclean test-faults test-mutations bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons
+.PHONY: help run test check setup networks footage web bytecode kernels body check-body lock clean distclean test-faults test-mutations bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
@@ -40,7 +40,7 @@ lint: $(VENV)/.ready
 	lint-imports
 	mypy
 
-setup: $(VENV)/.ready networks footage web kernels ## Install everything that the two commands need
+setup: $(VENV)/.ready networks footage web bytecode kernels ## Install everything that the two commands need
 
 $(VENV)/.ready: requirements.lock pyproject.toml deploy/setup/check-machine
 	@deploy/setup/check-machine
@@ -69,6 +69,13 @@ $(WEB)/node_modules/.ready: $(WEB)/package-lock.json | $(VENV)/.ready
 WEB_SOURCES := $(shell find $(WEB)/src $(WEB)/public -type f) $(addprefix $(WEB)/,index.html package.json svelte.config.js tsconfig.json vite.config.ts)
 $(WEB)/dist/index.html: $(WEB)/node_modules/.ready $(WEB_SOURCES)
 	@cd $(WEB) && npm run --silent build
+	@touch $@
+
+# A process that may not write beside its modules, or is told not to, would compile them at every start.
+bytecode: $(DATA)/bytecode.ready ## Compile our own Python modules
+$(DATA)/bytecode.ready: $(shell find edge models services -name '*.py' -not -path '*/node_modules/*') | $(VENV)/.ready
+	@mkdir -p $(@D)
+	@$(PYTHON) -m compileall -q -x node_modules edge models services
 	@touch $@
 
 kernels: $(DATA)/kernels/.ready ## Compile the numerical kernels, so that no live frame waits for it
@@ -134,7 +141,7 @@ lock: ## Compile requirements.lock anew after a change of pyproject.toml
 	  --generate-hashes --no-emit-index-url --no-header --no-annotate --quiet -o requirements.lock
 
 clean: ## Remove what was built, but not the downloads' results
-	rm -rf $(WEB)/dist $(DATA)/kernels $(DATA)/bench $(DATA)/logs .mypy_cache .ruff_cache .pytest_cache
+	rm -rf $(WEB)/dist $(DATA)/kernels $(DATA)/bytecode.ready $(DATA)/bench $(DATA)/logs .mypy_cache .ruff_cache .pytest_cache
 
 distclean: clean ## Remove everything that was installed or downloaded, too
 	rm -rf $(VENV) $(DATA)/networks $(FOOTAGES:%=$(DATA)/%) build/peers build/lock build/body $(WEB)/node_modules *.egg-info .hypothesis .import_linter_cache

@@ -1,6 +1,7 @@
 """Who starts first. A figure takes fusion, the page and two cameras; on two cores the others would only keep it waiting. Pure."""
 
 from collections.abc import Collection, Iterable
+from dataclasses import dataclass
 from itertools import combinations
 
 from models.camera.pinhole import Camera
@@ -8,6 +9,8 @@ from models.camera.rig import Rig
 from models.process import EDGE, RECORDER
 from services.supervisor.child import ChildSpec
 
+HEAD_START_S = 1.5
+"""So long the first have been at work before the others start: they find the pupil, and the page draws."""
 LATEST_S = 5.0
 """After this long nobody is waited for any more: the first may be slow, broken, or compiling for a minute."""
 
@@ -23,9 +26,19 @@ def first(specs: Iterable[ChildSpec], rig: Rig) -> set[str]:
     return {spec.name for spec in specs if spec.entry != RECORDER and (spec.entry != EDGE or spec.camera in pair)}
 
 
-def others_may_start(awaited: Collection[str], present: Collection[str], since_start_s: float) -> bool:
-    """Whether those that are not `first` may start: all who are awaited are at work, or have had their time."""
-    return since_start_s >= LATEST_S or set(awaited) <= set(present)
+@dataclass
+class HeadStart:
+    """Of the first before the others. `awaited`: their names; `began_s`: when they were started, on CLOCK_MONOTONIC."""
+
+    awaited: Collection[str]
+    began_s: float
+    _complete_s: float | None = None
+
+    def is_over(self, present: Collection[str], now_s: float) -> bool:
+        """Whether the others may start: all who are awaited have been at work for long enough, or have had their time."""
+        if self._complete_s is None and set(self.awaited) <= set(present):
+            self._complete_s = now_s
+        return now_s - self.began_s >= LATEST_S or (self._complete_s is not None and now_s - self._complete_s >= HEAD_START_S)
 
 
 def _cosine(pair: tuple[Camera, Camera]) -> float:

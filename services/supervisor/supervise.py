@@ -89,6 +89,7 @@ class Supervisor:
         self._journal = journal
         self._posts = posts_of(site, playback)
         self._first = start_order.first([post.spec for post in self._posts], rig)
+        self._head_start = start_order.HeadStart(self._first, time.monotonic())
         self._name = site.name if playback is None else f"The replay of {playback.title or 'the lesson'}"
         self._environment = dict(os.environ) | process_environment(data)
         # Now, not later: a source begins with the picture that is due when it is ready, so waiting would gain nothing.
@@ -166,7 +167,7 @@ class Supervisor:
 
     def _start_others(self, link: BusLink, now_s: float) -> None:
         waiting = [post for post in self._posts if post.waits]
-        if waiting and start_order.others_may_start(self._first, link.present, now_s - self._start_ns * 1e-9):
+        if waiting and self._head_start.is_over(link.present, now_s):
             for post in waiting:
                 post.waits = False
                 self._start(post)

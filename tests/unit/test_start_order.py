@@ -6,7 +6,7 @@ import pytest
 from models.camera.pinhole import Camera
 from models.camera.rig import Rig
 from services.supervisor.child import ChildSpec
-from services.supervisor.start_order import LATEST_S, first, others_may_start
+from services.supervisor.start_order import HEAD_START_S, LATEST_S, HeadStart, first
 
 
 def rig_looking(degrees: Sequence[float]) -> Rig:
@@ -47,11 +47,22 @@ def test_a_replay_starts_whole() -> None:
     assert first(specs, rig_looking((0, 90, 180))) == {"replay", "tablet"}
 
 
-def test_the_others_start_when_the_first_are_at_work_and_not_sooner() -> None:
-    awaited = {"fusion", "tablet", "edge-c0"}
-    assert not others_may_start(awaited, {"fusion", "tablet"}, 1.0)
-    assert others_may_start(awaited, {"fusion", "tablet", "edge-c0", "supervisor"}, 1.0)
+def test_the_others_start_when_the_first_have_been_at_work_for_a_while_and_not_sooner() -> None:
+    start = HeadStart({"fusion", "tablet", "edge-c0"}, 0.0)
+    assert not start.is_over({"fusion", "tablet"}, 1.0)
+    everybody = {"fusion", "tablet", "edge-c0", "supervisor"}
+    assert not start.is_over(everybody, 2.0)
+    assert not start.is_over(everybody, 2.0 + HEAD_START_S - 0.1)
+    assert start.is_over(everybody, 2.0 + HEAD_START_S)
 
 
 def test_a_first_camera_that_never_comes_does_not_hold_up_the_others_for_ever() -> None:
-    assert others_may_start({"fusion", "edge-c0"}, set(), LATEST_S)
+    start = HeadStart({"fusion", "edge-c0"}, 0.0)
+    assert not start.is_over({"fusion"}, LATEST_S - 0.1)
+    assert start.is_over({"fusion"}, LATEST_S)
+
+
+def test_a_first_camera_that_ends_again_does_not_hold_up_the_others() -> None:
+    start = HeadStart({"fusion", "edge-c0"}, 0.0)
+    assert not start.is_over({"fusion", "edge-c0"}, 1.0)
+    assert start.is_over({"fusion"}, 1.0 + HEAD_START_S)
