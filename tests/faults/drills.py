@@ -147,6 +147,7 @@ def process_drill(name: str, number: signal.Signals) -> Callable[[Stage], Outcom
     def play(stage: Stage) -> Outcome:
         stage.settle()
         victim = stage.box.child(name)
+        restarts = _restarts(stage.client.status(), name)
         fault_s = time.monotonic()
         os.kill(victim.pid, number)
         until(lambda: not _alive(victim), f"the end of {name}", RECOVERS_WITHIN_S)
@@ -154,7 +155,9 @@ def process_drill(name: str, number: signal.Signals) -> Callable[[Stage], Outcom
         until(lambda: name in stage._healthy() and _newer(stage, fault_s), f"{name} to be well again", RECOVERS_WITHIN_S)
 
         def said(status: dict[str, Any]) -> bool:
-            return any(each["name"] == name and each["state"] in ("gone", "silent", "failed") for each in status["processes"])
+            # A spare takes over so soon that the process is hardly missed, but that it had to is told.
+            gone = any(each["name"] == name and each["state"] in ("gone", "silent", "failed") for each in status["processes"])
+            return gone or _restarts(status, name) > restarts
 
         return stage.outcome(process_drill_name(name, number), fault_s, said)
 
@@ -164,6 +167,11 @@ def process_drill(name: str, number: signal.Signals) -> Callable[[Stage], Outcom
 def process_drill_name(name: str, number: signal.Signals) -> str:
     """What a drill of a process is called: "kill-edge"."""
     return f"{'kill' if number == signal.SIGKILL else 'stop'}-{name.partition('-')[0]}"
+
+
+def _restarts(status: dict[str, Any], name: str) -> int:
+    """How often the box says that it had to start a process again."""
+    return sum(each["restarts"] or 0 for each in status["processes"] if each["name"] == name)
 
 
 def _newer(stage: Stage, fault_s: float) -> bool:
