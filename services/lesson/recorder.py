@@ -22,6 +22,7 @@ from models.messages.lesson import FusionLog, SegmentRequest
 from models.messages.trouble import Trouble
 from services.lesson.folder_lock import is_locked, lock
 from services.lesson.following import Following
+from services.lesson.free_names import numbered
 from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX
 from services.lesson.lesson_file import LessonWriter
@@ -235,12 +236,8 @@ def lesson_name(header: LessonHeader, taken: set[str]) -> str:
     """A new name for a lesson: when it began, in local time, and what people call it; of letters, digits and hyphens."""
     began = dt.datetime.fromtimestamp(header.started_s, tz=dt.UTC).astimezone()
     words = re.sub(r"[\W_]+", "-", header.title.lower())[:_NAME_LENGTH].strip("-")
-    name = f"{began:%Y-%m-%d-%H%M}{'-' if words else ''}{words}"
-    number = 2
-    unique = name
-    while unique in taken:
-        unique, number = f"{name}-{number}", number + 1
-    return unique
+    names = numbered(f"{began:%Y-%m-%d-%H%M}{'-' if words else ''}{words}")
+    return next(name for name in names if name not in taken)
 
 
 def _name(writer: LessonWriter) -> str:

@@ -12,11 +12,12 @@ from collections import defaultdict
 from collections.abc import Iterator
 from itertools import cycle
 from pathlib import Path
+from typing import get_args
 
 import msgspec
 
 from models.messages import codec
-from models.messages.lesson import Entry, FusionLog
+from models.messages.lesson import Entry, EntryKind, FusionLog
 from models.messages.observation import Observation
 from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import LessonWriter
@@ -92,7 +93,7 @@ def _payloads(parts: list[LessonPart], persons: int) -> dict[str, list[bytes]]:
         for entry in part.entries:
             found[entry.kind].append(entry.payload)
     found["observation"] = list(_with_persons(found["observation"], persons))
-    missing = [kind for kind in ("observation", "tick", "motion", "health") if not found[kind]]
+    missing = [kind for kind in get_args(EntryKind) if not found[kind]]
     if missing:
         raise SystemExit(f"the lesson has no {missing[0]}: did the cameras run? See bench/box.log in the data folder")
     return found
