@@ -50,7 +50,7 @@ class FusionLog(msgspec.Struct, frozen=True):
     """A part of a segment (fusion -> recorder), about twice a second.
 
     Attributes:
-        segment_ns: CLOCK_MONOTONIC at which fusion's state began; names the segment.
+        segment_ns: CLOCK_MONOTONIC at which fusion's state began; names the segment, and is positive.
         sequence: counts the parts of the segment from 0; a number that is missing is a gap.
         entries: in fusion's order.
     """
@@ -62,6 +62,8 @@ class FusionLog(msgspec.Struct, frozen=True):
     def __post_init__(self) -> None:
         require_count("segment_ns", self.segment_ns)
         require_count("sequence", self.sequence)
+        if self.segment_ns == 0:
+            raise ValueError("segment_ns is 0, which names no segment")
 
     @property
     def latest_ns(self) -> int:

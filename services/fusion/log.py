@@ -93,7 +93,7 @@ class SegmentLog:
     def _keep(self, newest: _Kept) -> None:
         self._kept.append(newest)
         size = sum(kept.size for kept in self._kept)
-        while newest.t_ns - self._kept[0].t_ns > LEASE_NS or size > MAX_KEPT_BYTES:
+        while self._kept and (newest.t_ns - self._kept[0].t_ns > LEASE_NS or size > MAX_KEPT_BYTES):
             size -= self._kept.popleft().size
 
     def _missed(self, sequence: int, now_ns: int) -> tuple[FusionLog, ...]:

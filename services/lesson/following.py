@@ -40,7 +40,7 @@ class Following:
     def hear(self, part: FusionLog) -> Accepted | None:
         """A part was heard; None if it does not belong into the lesson, or not yet."""
         if part.segment_ns != self.segment_ns:
-            if part.segment_ns <= max(self.asked_ns, self.segment_ns):
+            if part.segment_ns < self.asked_ns or part.segment_ns < self.segment_ns:
                 return None
             self.segment_ns, self.sequence = part.segment_ns, 0
         if part.sequence != self.sequence:

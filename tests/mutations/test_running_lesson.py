@@ -29,7 +29,7 @@ LESSON_LENGTH = 1000
 def expected(loop: RecorderLoop) -> FusionLog:
     """The part that the lesson waits for."""
     running, now_ns = loop._recorder._running, time.monotonic_ns()
-    if running is None or running.following.segment_ns is None:
+    if running is None or running.following.segment_ns == 0:
         return log(now_ns, 0, now_ns)
     return log(now_ns, running.following.sequence, running.following.segment_ns)
 
@@ -73,5 +73,6 @@ def test_whatever_reaches_the_writer_the_lessons_are_whole(count: int, tmp_path:
     for path in finished:
         with open_lesson(path) as lesson:
             parts += lesson.summary().parts
+            assert all(part.segment_ns > 0 for part in lesson.parts()), "a part of no segment was written"
         assert latest_ns(path) <= ended_ns, "a mutant's time dates what came after it"
     assert parts > count // 10, "the mutants did not reach the writer"

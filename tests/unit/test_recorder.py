@@ -131,7 +131,9 @@ def test_a_lost_part_is_asked_for_and_a_gap_in_the_file_only_if_fusion_does_not_
 
 
 @pytest.mark.parametrize("wrong", ["an entry's time", "the segment's name"])
-def test_a_part_from_the_future_is_a_gap_and_does_not_date_what_comes_after_it(room: Room, wrong: str) -> None:
+def test_a_part_from_the_future_is_left_out_and_asked_for_again_and_does_not_date_what_comes_after_it(
+    room: Room, wrong: str
+) -> None:
     room.recorder.start("one")
     room.record(parts=1)
     room.now_ns += SECOND_NS // 2
@@ -142,6 +144,7 @@ def test_a_part_from_the_future_is_a_gap_and_does_not_date_what_comes_after_it(r
     room.recorder.take(good if wrong == "the segment's name" else part(BEGIN_NS + 1, 2))
     room.record(parts=2)
     assert room.recorder.health().recorded_s < 10
+    assert room.recorder.health().gaps == 0
     room.recorder.stop()
     (name,) = room.files(SUFFIX)
     with open_lesson(room.folder / name) as lesson:

@@ -123,5 +123,14 @@ def test_what_is_kept_is_bounded_in_bytes() -> None:
         log.add("observation", NOW_NS, bytes(MAX_PART_BYTES))
         assert log.part(NOW_NS + number) is not None
     kept = log.ask(SegmentRequest(NOW_NS, NOW_NS, parts // 2), NOW_NS + parts).again
+    assert kept
     assert sum(len(entry.payload) for part in kept for entry in part.entries) <= MAX_KEPT_BYTES
     assert log.ask(SegmentRequest(NOW_NS, NOW_NS, 0), NOW_NS + parts).begins
+
+
+def test_a_part_that_is_too_large_to_be_kept_is_given_out_all_the_same() -> None:
+    log = SegmentLog()
+    log.ask(SegmentRequest(NOW_NS), NOW_NS)
+    log.add("health", NOW_NS, bytes(MAX_KEPT_BYTES + 1))
+    assert log.part(NOW_NS + 1) is not None
+    assert log.ask(SegmentRequest(NOW_NS, NOW_NS, 0), NOW_NS + 2).begins
