@@ -1,7 +1,7 @@
 """Writing a lesson: an MCAP file that is whole up to its last synced part at every moment.
 
 A part of fusion's log is written as one chunk, in one piece, and synced before `append` returns. The file is called `.mcap.part`
-until its summary is written. Opening a file that a crash left is the same as going on with one: it is cut after its last whole
+until its summary is written, and `.ended.mcap.part` from the moment on when it is to be finished. Opening a file that a crash left is the same as going on with one: it is cut after its last whole
 chunk, and from there it can be appended to or finished.
 """
 
@@ -40,6 +40,9 @@ from services.lesson.layout import CHANNEL_OF, CHANNELS, MARK, PART_SUFFIX, PROF
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.mcap_records import MAGIC, encode, encode_messages
 from services.support.sync import sync_folder
+
+ENDED_SUFFIX = f".ended{PART_SUFFIX}"
+"""Of a file that only waits to be finished: nothing is recorded into it any more, whatever becomes of the recorder."""
 
 _COMPRESSION = "zstd"
 _LEVEL = 6
@@ -173,6 +176,11 @@ class LessonWriter:
         return self._contents.end
 
     @property
+    def ended(self) -> bool:
+        """Whether its recording was ended, so that it is only to be finished."""
+        return self.path.name.endswith(ENDED_SUFFIX)
+
+    @property
     def in_place(self) -> bool:
         """Whether what is written lies at `path`: a file that was removed, renamed or replaced takes in all without a word."""
         try:
@@ -213,9 +221,11 @@ class LessonWriter:
         """
         if not self.in_place:
             raise FileNotFoundError(errno.ENOENT, "the file was removed, renamed or replaced", str(self.path))
+        with suppress(OSError):  # The summary says the same.
+            self.path = mark_ended(self.path)
         self._write(_summary(self._contents))
         self._file.close()
-        finished = rename_free(self.path, self.path.name.removesuffix(PART_SUFFIX), SUFFIX)
+        finished = rename_free(self.path, lesson_of(self.path), SUFFIX)
         with suppress(OSError):  # If a power cut takes the new name away, the next start gives it again.
             sync_folder(finished.parent)
         return finished
@@ -238,6 +248,22 @@ class LessonWriter:
             raise
         contents.end += len(data)
         contents.checksum = zlib.crc32(data, contents.checksum)
+
+
+def lesson_of(path: Path) -> str:
+    """The name, without suffix, that an unfinished file gets when it is finished."""
+    return path.name.removesuffix(PART_SUFFIX).removesuffix(ENDED_SUFFIX.removesuffix(PART_SUFFIX))
+
+
+def mark_ended(path: Path) -> Path:
+    """Note that an unfinished file is only to be finished; its path from then on.
+
+    A name needs no room, so that it can be given on a full disk, too. It is not synced: after a power cut nothing is gone on with.
+
+    Raises:
+        OSError: it cannot be renamed, and has its old name still.
+    """
+    return path if path.name.endswith(ENDED_SUFFIX) else rename_free(path, lesson_of(path), ENDED_SUFFIX)
 
 
 def is_being_written(file: BinaryIO) -> bool:

@@ -1,7 +1,8 @@
 """What a crash left is made whole again: cut after its last whole chunk, and then finished or gone on with.
 
 A crash leaves the beginning of one chunk behind the last whole one, and nothing but that is thrown away: of a file that is damaged
-in any other way, a copy is kept beside what was recovered. No file is overwritten, and one of a newer KineBox is left as it is.
+in any other way, a copy is kept beside what was recovered. A lesson that was ended is only finished: nobody is recorded who was told
+that the recording is over. No file is overwritten, and one of a newer KineBox is left as it is.
 """
 
 import os
@@ -14,7 +15,7 @@ from models.errors import UserError
 from services.lesson.free_names import rename_free, reserve
 from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX
-from services.lesson.lesson_file import LessonWriter
+from services.lesson.lesson_file import LessonWriter, lesson_of, mark_ended
 from services.lesson.lesson_reader import NewerLessonError, read_header
 from services.lesson.readable_names import is_readable, readable
 from services.lesson.survey import survey
@@ -32,8 +33,8 @@ def recover(folder: Path, run_ns: int) -> LessonWriter | None:
         run_ns: CLOCK_MONOTONIC at the start of this run of the box.
 
     Returns:
-        The newest lesson that was begun in this run, still open, since the recorder died while it was being recorded; None if
-        there is none. All others are finished.
+        The newest lesson that was begun in this run and not ended, still open, since the recorder died while it was being
+        recorded; None if there is none. All others are finished.
     """
     goes_on: LessonWriter | None = None
     for path in sorted(folder.glob(f"*{PART_SUFFIX}")):
@@ -48,7 +49,8 @@ def recover(folder: Path, run_ns: int) -> LessonWriter | None:
         if writer is None:
             continue
         log.info("lesson recovered", lesson=path.name, mb=round(writer.size / 1e6, 2))
-        if writer.header.run_ns == run_ns and (goes_on is None or writer.header.started_ns > goes_on.header.started_ns):
+        cut_short = writer.header.run_ns == run_ns and not writer.ended
+        if cut_short and (goes_on is None or writer.header.started_ns > goes_on.header.started_ns):
             goes_on, writer = writer, goes_on
         if writer is not None:
             _finish(writer)
@@ -62,13 +64,15 @@ def _reopened(path: Path) -> LessonWriter | None:
     except NewerLessonError as error:
         log.warning("an unfinished lesson waits for an update", lesson=path.name, reason=str(error))
     except UserError as error:
-        kept = rename_free(path, _name(path), DAMAGED_SUFFIX)
+        kept = rename_free(path, lesson_of(path), DAMAGED_SUFFIX)
         log.warning("nothing could be recovered", lesson=path.name, kept=kept.name, reason=str(error))
     return None
 
 
 def reopen(path: Path) -> LessonWriter:
     """Open an unfinished lesson after its last whole chunk; what lies behind that is cut off.
+
+    One whose summary was begun is marked as ended.
 
     Raises:
         NewerLessonError: this KineBox does not know the file's format.
@@ -78,14 +82,16 @@ def reopen(path: Path) -> LessonWriter:
     file = path.open("r+b", buffering=0)
     try:
         header = read_header(path, file)
-        contents, damage = survey(file)
+        contents, damage, ended = survey(file)
+        if ended:
+            path = mark_ended(path)  # Before its summary, which says so as well, is cut off.
         if damage:
             kept = _keep(path)
             log.warning("lesson damaged", lesson=path.name, kept=kept.name, reason=damage)
         if not contents.chunks:
             file.close()
             path.unlink()
-            return LessonWriter.create(path.parent, _name(path), header)
+            return LessonWriter.create(path.parent, path.name.removesuffix(PART_SUFFIX), header)
         file.seek(contents.end)
         file.truncate()
     except BaseException:
@@ -96,7 +102,7 @@ def reopen(path: Path) -> LessonWriter:
 
 def _keep(path: Path) -> Path:
     """Copy a damaged file beside itself; the copy is safe when this returns."""
-    kept = reserve(path.parent, _name(path), DAMAGED_SUFFIX)
+    kept = reserve(path.parent, lesson_of(path), DAMAGED_SUFFIX)
     try:
         shutil.copyfile(path, kept)
         with kept.open("rb") as copy:
@@ -106,10 +112,6 @@ def _keep(path: Path) -> Path:
         kept.unlink(missing_ok=True)
         raise
     return kept
-
-
-def _name(path: Path) -> str:
-    return path.name.removesuffix(PART_SUFFIX)
 
 
 def _finish(writer: LessonWriter) -> None:

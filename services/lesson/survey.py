@@ -21,10 +21,12 @@ class Survey(NamedTuple):
     Attributes:
         contents: up to where it can be read.
         damage: why it cannot be read further; empty if it was only cut off or if its summary follows, which is made anew.
+        ended: its summary follows, so that its recording had been ended.
     """
 
     contents: Contents
     damage: str
+    ended: bool = False
 
 
 def survey(file: BinaryIO) -> Survey:
@@ -34,7 +36,7 @@ def survey(file: BinaryIO) -> Survey:
     try:
         for place in walk(file):
             if place.opcode == Opcode.DATA_END and len(place.body) == _DATA_END_BYTES:
-                break
+                return Survey(contents, "", ended=True)
             if place.opcode == Opcode.METADATA:
                 contents.metadata = MetadataIndex(place.start, place.end - place.start, lesson_header.NAME)
             if place.opcode == Opcode.CHUNK:

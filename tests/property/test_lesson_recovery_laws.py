@@ -14,6 +14,7 @@ import pytest
 import zstandard
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mcap.opcode import Opcode
 from structlog.testing import capture_logs
 
 from models.errors import UserError
@@ -61,9 +62,10 @@ def as_logged(parts: list[LessonPart]) -> list[FusionLog]:
 @pytest.mark.slow
 def test_whatever_a_crash_cuts_off_every_part_that_was_safe_is_found_again() -> None:
     data, stages = written()
+    (ended,) = (place.end for place in walk(BytesIO(data)) if place.opcode == Opcode.DATA_END)
     for cut in range(stages[0].end, len(data)):
         safe = max((stage for stage in stages if stage.end <= cut), key=lambda stage: stage.end)
-        assert survey(BytesIO(data[:cut])) == (safe, ""), f"cut at byte {cut}"
+        assert survey(BytesIO(data[:cut])) == (safe, "", cut >= ended), f"cut at byte {cut}"
 
 
 @settings(max_examples=60, deadline=None)
@@ -147,6 +149,23 @@ def test_at_the_start_every_lesson_that_was_left_is_finished_but_the_one_of_this
     ]
     with open_lesson(tmp_path / f"cut{SUFFIX}") as lesson:
         assert as_logged(list(lesson.parts())) == list(PARTS[:2])
+
+
+def test_a_file_whose_summary_was_begun_was_ended_and_stays_so_until_it_is_finished(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    data, _ = written()
+    (tmp_path / f"a{PART_SUFFIX}").write_bytes(data[:-20])
+
+    def fail(_: LessonWriter) -> Path:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as full:
+        full.setattr(LessonWriter, "finish", fail)
+        assert recover(tmp_path, header().run_ns) is None
+    assert recover(tmp_path, header().run_ns) is None, "the summary was cut off, and with it the sign of its end"
+    with open_lesson(tmp_path / f"a{SUFFIX}") as lesson:
+        assert as_logged(list(lesson.parts())) == list(PARTS)
 
 
 LENGTH_AT = 3

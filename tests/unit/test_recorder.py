@@ -305,6 +305,39 @@ def test_a_lesson_that_the_recorders_death_cut_short_is_gone_on_with(room: Room,
         assert [item.gap for item in lesson.parts()] == gaps
 
 
+def no_space(*_: object) -> None:
+    raise OSError(errno.ENOSPC, "No space left on device")
+
+
+@pytest.mark.parametrize("fails", ["os.fsync", "rename_free"], ids=["the summary", "the names"])
+def test_a_lesson_that_a_person_ended_is_never_gone_on_with_even_if_it_could_not_be_finished(
+    room: Room, monkeypatch: pytest.MonkeyPatch, fails: str
+) -> None:
+    room.recorder.start("one")
+    room.record(parts=2)
+    name = room.recorder.health().lesson
+    with monkeypatch.context() as full:
+        full.setattr(f"services.lesson.lesson_file.{fails}", no_space)
+        room.recorder.stop()
+        assert f"lesson {name} ended: No space left on device" in room.trouble
+        assert recover(room.folder, header().run_ns) is None, "nor while it still cannot be finished"
+    room.recorder = room.started(recover(room.folder, header().run_ns))
+    assert room.recorder.health().lesson == ""
+    assert room.recorder.look_after() is None
+    assert (room.files(PART_SUFFIX), room.files(SUFFIX)) == ([], [f"{name}{SUFFIX}"])
+    with open_lesson(room.folder / f"{name}{SUFFIX}") as lesson:
+        assert lesson.summary().parts == 2
+
+
+def test_a_lesson_that_was_ended_before_its_first_part_is_never_gone_on_with(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
+    room.recorder.start("one")
+    with monkeypatch.context() as full:
+        full.setattr("services.lesson.lesson_file.os.fsync", no_space)
+        room.recorder.stop()
+    assert recover(room.folder, header().run_ns) is None
+    assert len(room.files(SUFFIX)) == 1
+
+
 def test_an_automatic_recorder_begins_by_itself_and_stops_for_good_when_told_to(automatic_room: Room) -> None:
     room = automatic_room
     room.record(parts=1)
