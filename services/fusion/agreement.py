@@ -96,6 +96,8 @@ class Agreement:
         self._config = config
         self._newest: list[deque[tuple[float, tuple[Sighting, ...]]]] = [deque(maxlen=2) for _ in rig]
         self._epochs = [0] * len(self._views)
+        # When the newest pictures of a pair were looked at, and when somebody was in both of them who could be compared.
+        self._looked_s: dict[tuple[int, int], float] = {}
         self._compared_s: dict[tuple[int, int], float] = {}
         self._compared = {pair: _Comparisons() for pair in combinations(range(len(self._views)), 2)}
 
@@ -117,9 +119,11 @@ class Agreement:
                 continue
             if not track[0][0] <= theirs[-1][0] <= t_s:
                 continue
-            if theirs[-1][0] - self._compared_s.get(pair, -np.inf) >= PERIOD_S:
-                self._compare(pair, theirs[-1][1], self._at(theirs[-1][0], camera), swapped=other > camera)
-                self._compared_s[pair] = theirs[-1][0]
+            looked_s = theirs[-1][0]
+            if looked_s - self._looked_s.get(pair, -np.inf) >= PERIOD_S:
+                self._looked_s[pair] = looked_s
+                if self._compare(pair, theirs[-1][1], self._at(looked_s, camera), swapped=other > camera):
+                    self._compared_s[pair] = looked_s
 
     def judge(self) -> Disagreement | None:
         """Who does not agree; None while all do, or as long as it cannot be told."""
@@ -140,7 +144,7 @@ class Agreement:
     def _is_at_it(self, groups: list[set[int]], judged: Mapping[tuple[int, int], bool]) -> bool:
         """Whether two groups are being compared by a pair that is yet to be judged, and may turn out to be one."""
         group_of = {camera: number for number, group in enumerate(groups) for camera in group}
-        newest_s = max(self._compared_s.values())
+        newest_s = max(self._looked_s.values())
         return any(
             pair not in judged and newest_s - t_s < _AT_IT_S and len({group_of.get(camera) for camera in pair} - {None}) == 2
             for pair, t_s in self._compared_s.items()
@@ -163,13 +167,15 @@ class Agreement:
             if person.track in earlier
         ]
 
-    def _compare(self, pair: tuple[int, int], theirs: Sequence[Sighting], own: Sequence[Sighting], *, swapped: bool) -> None:
-        """Keep the pair of persons who fit best, if there is any pair that can be compared."""
+    def _compare(self, pair: tuple[int, int], theirs: Sequence[Sighting], own: Sequence[Sighting], *, swapped: bool) -> bool:
+        """Keep the pair of persons who fit best; whether there is any pair that can be compared."""
         couples = Couples.of(own, theirs) if swapped else Couples.of(theirs, own)
-        if couples is not None:
-            distances = couples.distances(self._fundamentals[pair])
-            best = int(np.argmin(distances))
-            self._compared[pair].add(couples.one(best), float(distances[best]))
+        if couples is None:
+            return False
+        distances = couples.distances(self._fundamentals[pair])
+        best = int(np.argmin(distances))
+        self._compared[pair].add(couples.one(best), float(distances[best]))
+        return True
 
     def _would_agree(self, a: int, b: int, judged: Mapping[tuple[int, int], bool]) -> bool:
         """Whether all pairs would agree if the pictures of two cameras were exchanged; keypoints keep their undistortion."""
