@@ -130,8 +130,9 @@ def test_whatever_is_lost_the_lesson_is_whole_within_its_segments_and_goes_on(se
 
 
 @settings(max_examples=20)
-@given(st.integers(0, 2**32), st.sampled_from((0.0, 0.1)), st.sampled_from((1, SECOND_NS // 3, 2 * SECOND_NS)))
-def test_nothing_is_missing_as_long_as_fusion_lives_and_the_recorder_is_back_in_time(seed: int, loss: float, delay_ns: int) -> None:
+@given(st.integers(0, 2**32), st.sampled_from(((0.0, 2 * SECOND_NS), (0.0, 1), (0.1, SECOND_NS // 10))))
+def test_nothing_is_missing_as_long_as_fusion_lives_and_the_recorder_is_back_in_time(seed: int, bus: tuple[float, int]) -> None:
+    loss, delay_ns = bus
     story = Story(random.Random(seed), loss, delay_ns, in_order=True)  # noqa: S311 - no secret
     for tick in range(TROUBLED_TICKS):
         story.tick()
