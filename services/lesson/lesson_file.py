@@ -1,8 +1,8 @@
 """Writing a lesson: an MCAP file that is whole up to its last synced part at every moment.
 
 A part of fusion's log is written as one chunk, in one piece, and synced before `append` returns. The file is called `.mcap.part`
-until its summary is written, and `.ended.mcap.part` from the moment on when it is to be finished. Opening a file that a crash left is the same as going on with one: it is cut after its last whole
-chunk, and from there it can be appended to or finished.
+until its summary is written, and `.ended.mcap.part` from the moment on when it is to be finished. Opening a file that a crash left is
+the same as going on with one: it is cut after its last whole chunk, and from there it can be appended to or finished.
 """
 
 import errno

@@ -1,8 +1,8 @@
 """What a crash left is made whole again: cut after its last whole chunk, and then finished or gone on with.
 
 A crash leaves the beginning of one chunk behind the last whole one, and nothing but that is thrown away: of a file that is damaged
-in any other way, a copy is kept beside what was recovered. A lesson that was ended is only finished: nobody is recorded who was told
-that the recording is over. No file is overwritten, and one of a newer KineBox is left as it is.
+in any other way, a copy is kept beside what was recovered. A lesson that was ended is only finished: nobody is recorded who was
+told that the recording is over. No file is overwritten, and one of a newer KineBox is left as it is.
 """
 
 import os

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 BURST_NS = 500_000_000
 """The tokens that the router's end takes away vanish in any order, and on a busy machine not at once."""
 REJOIN_NS = 2_000_000_000
-"""Links are mended one after the other: so long after the router's return a process may still be on its way back."""
+"""Links are mended one after the other: so long after somebody routes again a process may still be on its way back."""
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Presence:
     Attributes:
         alive: None if that is not known: not seen yet, or not to be seen without a router.
         since_ns: CLOCK_MONOTONIC.
-        cut_off: no router, or one that has only just come: the process cannot be heard, however well it is.
+        cut_off: nobody routes, or only since a moment ago: the process cannot be heard, however well it is.
     """
 
     alive: bool | None
@@ -39,12 +39,18 @@ class Presences:
         self._started_ns = started_ns
         self._seen: dict[str, Presence] = {}
         self._router_lost_ns: int | None = None
+        self._stood_in_ns: int | None = None
 
     def note(self, process: str, alive: bool, now_ns: int) -> None:
         """A token came or went."""
         if process == self._router and not alive:
             self._router_lost_ns = now_ns
         self._seen[process] = Presence(alive, now_ns)
+
+    def note_stand_in(self, now_ns: int) -> None:
+        """Somebody routes in the router's place, from now on or since earlier: its token will not come back."""
+        if self._stood_in_ns is None:
+            self._stood_in_ns = now_ns
 
     def of(self, process: str, now_ns: int) -> Presence:
         """One process at `now_ns`."""
@@ -56,7 +62,8 @@ class Presences:
         return Presence(None if unknown else seen.alive, seen.since_ns, cut_off=True)
 
     def _outage(self, now_ns: int) -> bool:
-        router = self._seen.get(self._router)
-        if router is None or self._router_lost_ns is None:
+        if self._router_lost_ns is None:
             return False
-        return not router.alive or now_ns - router.since_ns < REJOIN_NS
+        router = self._seen[self._router]
+        back_ns = router.since_ns if router.alive else self._stood_in_ns
+        return back_ns is None or now_ns - back_ns < REJOIN_NS

@@ -73,7 +73,8 @@ class RoomState:
         self._playback = playback
         self._processes = {ROUTER, RECORDER, REPLAY, "tablet", "supervisor", *(process_name(EDGE, name) for name in cameras)}
         self._health: dict[str, HeardHealth] = {}
-        self._presences = Presences(ROUTER if playback is None else REPLAY, started_ns)
+        self._router = ROUTER if playback is None else REPLAY
+        self._presences = Presences(self._router, started_ns)
         self._motion: Motion | None = None
         self._meter = MotionMeter()
         self.rejected_bus_messages = 0
@@ -91,6 +92,9 @@ class RoomState:
             self.rejected_bus_messages += 1
             return
         self._health[health.process] = HeardHealth(health, now_ns)
+        restarts = self._restarts(self._router)
+        if health.process == "supervisor" and restarts is not None and restarts.given_up:
+            self._presences.note_stand_in(now_ns)  # It would not be heard if it did not route.
 
     def set_alive(self, process: str, alive: bool, now_ns: int) -> None:
         """A process joined or left the bus."""
@@ -198,7 +202,9 @@ class RoomState:
 
     def _restart_count(self, process: str) -> int | None:
         restarts = self._restarts(process)
-        return restarts.count if restarts else None if self._supervisor() is None else 0
+        if restarts is not None:
+            return restarts.count
+        return 0 if self._supervisor() is not None else None
 
     def _machine(self, now_ns: int) -> MachineStatus | None:
         health = self._said("supervisor", now_ns)

@@ -1,6 +1,7 @@
 """How the supervisor joins a real bus whose link breaks in between."""
 
 import threading
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -11,7 +12,7 @@ from models.messages.health import Health, SupervisorHealth
 from models.messages.trouble import Trouble
 from services.bus import zenoh_bus
 from services.supervisor.bus_link import BusLink
-from tests.integration.waiting import free_port, until
+from tests.integration.waiting import DEADLINE_S, free_port, until
 
 OWN = SupervisorHealth("test", 1, ())
 
@@ -98,6 +99,70 @@ def test_a_supervisor_that_never_met_a_router_can_be_it() -> None:
         assert camera is not None
         camera.declare_alive(topics.alive("edge-a"))
         until(lambda: "edge-a" in link.present, "who is present to be known")
+        camera.close()
+    finally:
+        link.close()
+
+
+class SilentRouter:
+    """A router whose port accepts and says nothing: who opens a client hangs until `goes_on`, and has one then all the same."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.asked, self.goes_on, self.closed = threading.Event(), threading.Event(), threading.Event()
+        self._others = zenoh_bus.open_router(f"tcp/127.0.0.1:{free_port()}")
+        monkeypatch.setattr(zenoh_bus, "open_client", self._open)
+
+    def _open(self, _endpoint: str, _stop: threading.Event) -> Any:
+        self.asked.set()
+        self.goes_on.wait()
+        truly_close = self._others.close
+
+        def close() -> None:
+            truly_close()
+            self.closed.set()
+
+        self._others.close = close  # type: ignore[method-assign]
+        return self._others
+
+    def end(self) -> None:
+        """Answer at last, and see that nothing stays open."""
+        self.goes_on.set()
+        assert self.closed.wait(DEADLINE_S), "the session that opened late stays open"
+
+
+def returns(call: Callable[[], None]) -> bool:
+    """Whether a call returns, while what it may wait for does not come."""
+    caller = threading.Thread(target=call, daemon=True)
+    caller.start()
+    caller.join(DEADLINE_S)
+    return not caller.is_alive()
+
+
+def test_the_end_of_the_box_does_not_wait_for_a_router_that_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
+    router = SilentRouter(monkeypatch)
+    link = BusLink("tcp/127.0.0.1:1")
+    assert router.asked.wait(DEADLINE_S)
+    assert returns(link.close), "close() waits for the router"
+    router.end()
+
+
+def test_the_supervisor_takes_the_place_of_a_router_that_never_answered_without_waiting_for_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    open_client = zenoh_bus.open_client
+    router = SilentRouter(monkeypatch)
+    link = BusLink(endpoint)
+    try:
+        assert router.asked.wait(DEADLINE_S)
+        assert returns(link.route), "route() waits for the router"
+        camera = open_client(endpoint, threading.Event())
+        assert camera is not None
+        camera.declare_alive(topics.alive("edge-a"))
+        until(lambda: "edge-a" in link.present, "who is present to be known")
+        router.end()
+        assert link.routes
+        assert "edge-a" in link.present, "the session that opened late took the router's place"
         camera.close()
     finally:
         link.close()

@@ -2,15 +2,18 @@
 
 import datetime as dt
 import errno
+import fcntl
 import os
 import sqlite3
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import IO, Any
 
 import pytest
 
-from services.lesson import index
+from services.lesson import index, lesson_header
 from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX
 from services.lesson.lesson_file import LessonWriter
@@ -218,6 +221,75 @@ def test_a_lesson_on_a_disk_that_fails_is_listed_with_what_to_do(tmp_path: Path,
     (row,) = LessonIndex(tmp_path).lessons()
     assert row.state == "damaged"
     assert row.problem == f"lesson {file} cannot be read: Input/output error; correct its owner and rights, or mend its disk"
+
+
+@pytest.mark.parametrize("error", [PermissionError(errno.EACCES, "Permission denied"), OSError(errno.EIO, "Input/output error")])
+@pytest.mark.parametrize("finish", [True, False])
+def test_a_lesson_that_could_not_be_read_once_is_listed_as_it_is_when_it_can_be(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: OSError, finish: bool
+) -> None:
+    file = record(tmp_path, "a", finish=finish)
+    real = Path.open
+
+    def refuse(path: Path, *how: Any, **more: Any) -> IO[Any]:
+        if path == file:
+            raise error
+        return real(path, *how, **more)
+
+    with monkeypatch.context() as closed:
+        closed.setattr(Path, "open", refuse)
+        assert [row.state for row in LessonIndex(tmp_path).lessons()] == ["damaged"]
+    (row,) = LessonIndex(tmp_path).lessons()
+    assert (row.state, row.problem, row.segments) == ("finished" if finish else "unfinished", "", 2)
+
+
+@pytest.mark.parametrize("finish", [True, False])
+def test_a_lesson_of_a_newer_kinebox_is_listed_as_it_is_after_the_update(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, finish: bool
+) -> None:
+    with monkeypatch.context() as newer:
+        newer.setattr(lesson_header, "FORMAT", lesson_header.FORMAT + 1)
+        record(tmp_path, "a", finish=finish)
+    (row,) = LessonIndex(tmp_path).lessons()
+    assert "recorded by a newer KineBox" in row.problem
+    monkeypatch.setattr(lesson_header, "FORMAT", lesson_header.FORMAT + 1)
+    (row,) = LessonIndex(tmp_path).lessons()
+    assert (row.state, row.problem) == ("finished" if finish else "unfinished", "")
+
+
+def test_a_lesson_that_is_damaged_for_good_is_not_read_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = record(tmp_path, "a")
+    file.write_bytes(file.read_bytes()[:-40])
+    known = LessonIndex(tmp_path).lessons()
+    monkeypatch.setattr(index, "open_lesson", None)
+    assert LessonIndex(tmp_path).lessons() == known
+
+
+@pytest.mark.parametrize("begun", ["created", "reopened"])
+def test_a_list_that_looks_while_a_lesson_begins_keeps_it_from_being_listed_as_recording_for_one_part_only(
+    tmp_path: Path, begun: str
+) -> None:
+    left = record(tmp_path, "a", parts=1, finish=False)
+    with ExitStack() as stack:
+        list_file = stack.enter_context(left.open("rb"))
+        fcntl.flock(list_file, fcntl.LOCK_SH)
+        if begun == "created":
+            real = Path.open
+
+            def seen_at_once(path: Path, *how: Any, **more: Any) -> IO[Any]:
+                file = real(path, *how, **more)
+                fcntl.flock(stack.enter_context(real(path, "rb")), fcntl.LOCK_SH)
+                return file
+
+            with pytest.MonkeyPatch.context() as looking:
+                looking.setattr(Path, "open", seen_at_once)
+                writer = LessonWriter.create(tmp_path, "b", header())
+        else:
+            writer = reopen(left)
+    writer.append(part(BEGIN_NS, 0 if begun == "created" else 1))
+    states = {row.lesson: row.state for row in LessonIndex(tmp_path).lessons()}
+    assert states[writer.path.name.removesuffix(PART_SUFFIX)] == "recording"
+    writer.close()
 
 
 @pytest.mark.parametrize("trouble", ["malformed", "locked", "folder gone"])

@@ -1,6 +1,7 @@
 """The recorder: lessons begin and end as people wish, and as the disk allows."""
 
 import errno
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -271,6 +272,46 @@ def test_after_the_folder_was_moved_away_the_next_lesson_makes_it_anew(room: Roo
     (name,) = room.files(SUFFIX)
     with open_lesson(room.folder / name) as opened:
         assert opened.summary().parts == 2
+
+
+@pytest.mark.parametrize("code", [errno.EIO, errno.ESTALE, errno.EACCES], ids=errno.errorcode.get)
+def test_a_lesson_whose_file_cannot_be_looked_at_ends_with_the_reason_and_comes_back_when_its_disk_does(
+    room: Room, monkeypatch: pytest.MonkeyPatch, code: int
+) -> None:
+    room.recorder.start("one")
+    room.record(parts=3)
+    lesson = room.recorder.health().lesson
+    real = Path.stat
+
+    def stat(path: Path, *, follow_symlinks: bool = True) -> os.stat_result:
+        if path.name.endswith(PART_SUFFIX):
+            raise OSError(code, os.strerror(code))
+        return real(path, follow_symlinks=follow_symlinks)
+
+    with monkeypatch.context() as pulled:
+        pulled.setattr(Path, "stat", stat)
+        assert room.recorder.look_after() is None
+        assert room.recorder.health().lesson == ""
+        assert f"lesson {lesson} ended: {os.strerror(code)}" in room.trouble
+    room.recorder.start("two")
+    assert room.trouble == ""
+    room.recorder.stop()
+    assert recover(room.folder, run_ns=0) is None
+    with open_lesson(room.folder / f"{lesson}{SUFFIX}") as opened:
+        assert opened.summary().parts == 3
+
+
+def test_a_lesson_that_died_before_its_first_part_has_no_gap_before_it(room: Room) -> None:
+    room.recorder.start("one")
+    name = room.recorder.health().lesson
+    assert room.recorder._running is not None
+    room.recorder._running.writer.close()
+    room.recorder = room.started(recover(room.folder, header().run_ns))
+    room.record(parts=2)
+    assert room.recorder.health().gaps == 0
+    room.recorder.stop()
+    with open_lesson(room.folder / f"{name}{SUFFIX}") as lesson:
+        assert [item.gap for item in lesson.parts()] == ["", ""]
 
 
 def test_a_folder_that_cannot_be_written_to_is_named(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:

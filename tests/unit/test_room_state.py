@@ -195,6 +195,38 @@ def test_a_camera_that_does_not_return_with_the_router_has_stopped() -> None:
     assert judged(state, T0 + 4 * S) == ("lost", "process_gone")
 
 
+def test_once_the_supervisor_routes_a_camera_that_stops_is_lost_and_not_unheard() -> None:
+    state = everybody_at_work()
+    state.set_alive("fusion", False, T0 + 10 * S)
+    state.set_alive("edge-a", False, T0 + 10 * S)
+    state.receive_health(given_up("fusion"), T0 + 12 * S)  # It is heard, so somebody routes; fusion's token never comes back.
+    assert judged(state, T0 + 13 * S) == ("unknown", "unheard"), "it may still be on its way back"
+    state.set_alive("edge-a", True, T0 + 13 * S)
+    state.receive_health(health(), T0 + 90 * S)
+    state.receive_health(given_up("fusion"), T0 + 99 * S)
+    state.set_alive("edge-a", False, T0 + 100 * S)
+    assert judged(state, T0 + 100 * S) == ("lost", "process_gone")
+    states = {process.name: process.state for process in state.status(T0 + 103 * S, 0).processes}
+    assert states["edge-a"] == "gone"
+
+
+def test_a_camera_that_does_not_find_the_supervisor_that_routes_has_stopped() -> None:
+    state = everybody_at_work()
+    state.set_alive("fusion", False, T0 + 10 * S)
+    state.set_alive("edge-a", False, T0 + 10 * S)
+    for second in range(12, 16):
+        state.receive_health(given_up("fusion"), T0 + second * S)
+    assert judged(state, T0 + 15 * S) == ("lost", "process_gone")
+
+
+def test_that_another_process_is_given_up_is_no_news_of_the_router() -> None:
+    state = everybody_at_work()
+    state.set_alive("fusion", False, T0 + 10 * S)
+    state.set_alive("edge-a", False, T0 + 10 * S)
+    state.receive_health(given_up("recorder"), T0 + 10 * S)
+    assert judged(state, T0 + 20 * S) == ("unknown", "unheard")
+
+
 def test_a_camera_that_stopped_before_the_router_did_is_not_forgotten() -> None:
     state = everybody_at_work()
     state.set_alive("edge-a", False, T0 + S)
