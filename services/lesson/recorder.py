@@ -39,6 +39,7 @@ log = structlog.get_logger()
 
 _NAME_LENGTH = 40
 _REMOVE = "remove lessons that are not needed"
+_MEND = "make room on the disk, or put it back or replace it"
 _TAKEN_AWAY = "its file was removed, renamed or replaced"
 _LEAVE_ALONE = f"leave files that end with '{PART_SUFFIX}' alone, and begin another lesson"
 
@@ -132,7 +133,7 @@ class Recorder:
         try:
             running.writer.append(part, accepted.gap)
         except OSError as error:
-            self._finish(error.strerror or str(error), "make room on the disk or replace it")
+            self._finish(error.strerror or str(error), _MEND)
             return
         if accepted.gap:
             log.warning("gap in the lesson", lesson=_name(running.writer), reason=accepted.gap)
@@ -143,7 +144,12 @@ class Recorder:
             self.start(AUTOMATIC_TITLE)
         if self._running is None:
             return None
-        if not self._running.writer.in_place:
+        try:
+            in_place = self._running.writer.in_place
+        except OSError as error:
+            self._finish(error.strerror or str(error), _MEND)
+            return None
+        if not in_place:
             self._finish()
             return None
         free_mb = self._free_mb()
@@ -179,6 +185,9 @@ class Recorder:
 
     def _begin(self, writer: LessonWriter, gap: str = "") -> None:
         now_ns = self._clock_ns()
+        segment_ns, _ = writer.position
+        if not segment_ns:
+            gap = ""  # Before the first part nothing is missing.
         self._running = _Running(writer, Following(now_ns, gap, *writer.position), heard_ns=now_ns)
 
     def _finish(self, why: str = "", remedy: str = "") -> None:
@@ -198,7 +207,7 @@ class Recorder:
             return
         except OSError as error:
             writer.close()
-            self._trouble(f"lesson {name} ended: {error.strerror}", "make room on the disk: the next start of KineBox completes it")
+            self._trouble(f"lesson {name} ended: {error.strerror}", f"{_MEND}: the next start of KineBox completes it")
             return
         LessonIndex(self._folder).note(writer, path)
         log.info("lesson ends", lesson=name, seconds=round(writer.recorded_s, 1), mb=round(writer.size / 1e6, 2), gaps=writer.gaps)
