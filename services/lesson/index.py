@@ -13,17 +13,19 @@ from msgspec import Meta
 from models.errors import UserError
 from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import LessonWriter, is_being_written
-from services.lesson.lesson_reader import open_lesson, read_header
+from services.lesson.lesson_reader import NewerLessonError, open_lesson, read_header
 from services.lesson.readable_names import readable
 from services.lesson.survey import survey
 
 NAME = "index.sqlite"
-_VERSION = 2
+_VERSION = 3
 _PATIENCE_S = 5.0
 """How long to wait for another process that writes."""
 
 _LATEST_NS = 2**63 - 1
 """Of a file's date; a file system may know later ones, SQLite and calendars do not."""
+_READ_AGAIN_NS = 0
+"""In place of a file's date: what was wrong may pass without a change of the file."""
 _Seconds = Annotated[float, Meta(ge=-2e10, le=2e10)]
 """Some centuries; every time that a lesson can hold."""
 
@@ -44,7 +46,8 @@ class LessonRow:
         segments: stretches that replay in one go.
         state: "finished"; "recording"; "unfinished", which was being recorded when its recorder died; "damaged".
         problem: what a person is told who opens it; empty if nothing is wrong.
-        changed_ns: when the file was changed last, by which a changed file is known.
+        changed_ns: when the file was changed last, by which a changed file is known; 0 of one that could not be read for a reason
+            that may pass without a change of the file: it is read each time.
     """
 
     lesson: str
@@ -147,11 +150,10 @@ class LessonIndex:
             except FileNotFoundError:
                 continue  # Finished or removed meanwhile.
             except OSError as error:
-                yield LessonRow(lesson, "", 0.0, 0.0, 0, 0, 0, "damaged", _unreadable(path, error), 0)
+                yield LessonRow(lesson, "", 0.0, 0.0, 0, 0, 0, "damaged", _unreadable(path, error), _READ_AGAIN_NS)
                 continue
             row, size, changed_ns = known.get(lesson), status.st_size, min(max(status.st_mtime_ns, -_LATEST_NS), _LATEST_NS)
-            # A recorder that dies does not change its file.
-            if row is None or row.state == "recording" or (row.bytes, row.changed_ns) != (size, changed_ns):
+            if row is None or _may_differ(row) or (row.bytes, row.changed_ns) != (size, changed_ns):
                 row = _read(path, lesson, size, changed_ns)
             yield row
 
@@ -249,9 +251,16 @@ def _read(path: Path, lesson: str, size: int, changed_ns: int) -> LessonRow:
             seconds, gaps, segments = summary.seconds, summary.gaps, summary.segments
     except UserError as error:
         state, problem = "damaged", readable(str(error))
+        if isinstance(error, NewerLessonError) or isinstance(error.__cause__, OSError):
+            changed_ns = _READ_AGAIN_NS
     except OSError as error:
-        state, problem = "damaged", _unreadable(path, error)
+        state, problem, changed_ns = "damaged", _unreadable(path, error), _READ_AGAIN_NS
     return LessonRow(lesson, title, started_s, seconds, size, gaps, segments, state, problem, changed_ns)
+
+
+def _may_differ(row: LessonRow) -> bool:
+    """Whether a lesson may be otherwise than listed though its file was not changed: a recorder that dies does not change it."""
+    return row.state == "recording" or row.changed_ns == _READ_AGAIN_NS
 
 
 def _unreadable(path: Path, error: OSError) -> str:

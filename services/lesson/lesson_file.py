@@ -1,8 +1,8 @@
 """Writing a lesson: an MCAP file that is whole up to its last synced part at every moment.
 
 A part of fusion's log is written as one chunk, in one piece, and synced before `append` returns. The file is called `.mcap.part`
-until its summary is written, and `.ended.mcap.part` from the moment on when it is to be finished. Opening a file that a crash left is
-the same as going on with one: it is cut after its last whole chunk, and from there it can be appended to or finished.
+until its summary is written, and `.ended.mcap.part` from the moment on when it is to be finished. Opening a file that a crash left
+is the same as going on with one: it is cut after its last whole chunk, and from there it can be appended to or finished.
 """
 
 import errno
@@ -109,7 +109,7 @@ class Contents:
 
 
 class LessonWriter:
-    """An unfinished lesson file that is open for writing, and locked as long as it is.
+    """An unfinished lesson file that is open for writing, and locked as long as it is, so that a list knows.
 
     Args:
         path: of the file, with `PART_SUFFIX`.
@@ -123,8 +123,8 @@ class LessonWriter:
         self.header = header
         self._file = file
         self._contents = contents
-        with suppress(OSError):  # A list that looks at this moment may be wrong once; nothing else depends on it.
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        self._locked = False
+        self._lock()
 
     @classmethod
     def create(cls, folder: Path, name: str, header: LessonHeader) -> "LessonWriter":
@@ -199,6 +199,7 @@ class LessonWriter:
         Raises:
             OSError: the disk is full or broken; the file is as it was before, unless it cannot even be cut.
         """
+        self._lock()
         contents = self._contents
         mark = Mark(part.segment_ns, part.sequence, gap)
         log_time_ns = max(contents.log_time_ns, part.entries[0].t_ns if part.entries else part.segment_ns)
@@ -233,6 +234,14 @@ class LessonWriter:
     def close(self) -> None:
         """Leave the file as it is, unfinished."""
         self._file.close()
+
+    def _lock(self) -> None:
+        """Lock the file; if a list looks at it at this moment, then with the next part, for no list may keep a recorder waiting."""
+        if self._locked:
+            return
+        with suppress(OSError):
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            self._locked = True
 
     def _write(self, data: bytes) -> None:
         """All of `data` or nothing, and synced."""

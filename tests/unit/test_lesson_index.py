@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import IO, Any
+from typing import Any
 
 import pytest
 
@@ -231,7 +231,7 @@ def test_a_lesson_that_could_not_be_read_once_is_listed_as_it_is_when_it_can_be(
     file = record(tmp_path, "a", finish=finish)
     real = Path.open
 
-    def refuse(path: Path, *how: Any, **more: Any) -> IO[Any]:
+    def refuse(path: Path, *how: Any, **more: Any) -> Any:
         if path == file:
             raise error
         return real(path, *how, **more)
@@ -266,7 +266,7 @@ def test_a_lesson_that_is_damaged_for_good_is_not_read_again(tmp_path: Path, mon
 
 
 @pytest.mark.parametrize("begun", ["created", "reopened"])
-def test_a_list_that_looks_while_a_lesson_begins_keeps_it_from_being_listed_as_recording_for_one_part_only(
+def test_a_lesson_that_a_list_looked_at_as_it_began_is_listed_as_recording_from_its_next_part_on(
     tmp_path: Path, begun: str
 ) -> None:
     left = record(tmp_path, "a", parts=1, finish=False)
@@ -276,7 +276,7 @@ def test_a_list_that_looks_while_a_lesson_begins_keeps_it_from_being_listed_as_r
         if begun == "created":
             real = Path.open
 
-            def seen_at_once(path: Path, *how: Any, **more: Any) -> IO[Any]:
+            def seen_at_once(path: Path, *how: Any, **more: Any) -> Any:
                 file = real(path, *how, **more)
                 fcntl.flock(stack.enter_context(real(path, "rb")), fcntl.LOCK_SH)
                 return file
