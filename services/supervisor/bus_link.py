@@ -1,6 +1,9 @@
 """The supervisor on the bus. It joins beside its loop, since the router is a process that the loop has yet to start."""
 
 import threading
+from collections.abc import Callable
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
 
 from models.errors import UserError
 from models.messages import codec, topics
@@ -40,31 +43,45 @@ def unread_beats(subscription: Subscription) -> tuple[list[tuple[str, Beat]], in
     return beats, refused
 
 
+@dataclass(frozen=True)
+class _Joined:
+    """What the supervisor has on a bus that it joined."""
+
+    bus: Bus
+    healths: Subscription
+    beats: Subscription
+    present: set[str]
+    reporter: HealthReporter
+
+
 class BusLink:
     """Hears how the processes are and says how the supervisor is; until the bus is there it does neither.
+
+    No method waits for the bus. A router that hangs accepts, and nothing follows: Zenoh then waits for ten seconds, and cannot be
+    told to stop. Whoever opens is left behind then, and closes what he still opens.
 
     Args:
         endpoint: of the bus.
     """
 
     def __init__(self, endpoint: str) -> None:
-        self.present: set[str] = set()
-        """The processes that are at work: got ready, and on the bus."""
         self._endpoint = endpoint
         self._refused = 0
-        self._stop = threading.Event()
         self._is_client = True
-        self._bus: Bus | None = None
-        self._subscription: Subscription | None = None
-        self._beats: Subscription | None = None
-        self._reporter: HealthReporter | None = None
-        self._opener = threading.Thread(target=self._open, name="bus", daemon=True)
-        self._opener.start()
+        self._joined: _Joined | None = None
+        self._changes = threading.Lock()
+        self._stop = self._begin(self._open)
+
+    @property
+    def present(self) -> AbstractSet[str]:
+        """The processes that are at work: got ready, and on the bus."""
+        joined = self._joined
+        return frozenset() if joined is None else joined.present
 
     @property
     def routes(self) -> bool:
         """Whether everybody is heard through us."""
-        return not self._is_client and self._bus is not None
+        return not self._is_client and self._joined is not None
 
     def route(self) -> None:
         """Be the router from now on: the process that was it is given up, and without one nobody hears that."""
@@ -72,23 +89,21 @@ class BusLink:
             return
         self._leave()
         self._is_client = False
-        self._stop.clear()
-        self._opener = threading.Thread(target=self._open_router, name="bus", daemon=True)
-        self._opener.start()
+        self._stop = self._begin(self._open_router)
 
     def heard(self) -> list[Health]:
         """What has come in since the last call."""
-        if self._subscription is None:
+        if self._joined is None:
             return []
-        healths, refused = unread_healths(self._subscription)
+        healths, refused = unread_healths(self._joined.healths)
         self._refused += refused
         return healths
 
     def beats(self) -> list[tuple[str, Beat]]:
         """The processes whose loops have said since the last call that they go round, or that they end."""
-        if self._beats is None:
+        if self._joined is None:
             return []
-        beats, refused = unread_beats(self._beats)
+        beats, refused = unread_beats(self._joined.beats)
         self._refused += refused
         return beats
 
@@ -103,62 +118,82 @@ class BusLink:
             machine: its newest measurement.
             supervisor: what became of the processes.
         """
-        bus, reporter = self._bus, self._reporter
-        if bus is None or reporter is None or not reporter.due():
+        joined = self._joined
+        if joined is None or not joined.reporter.due():
             return
         refused, self._refused = self._refused, 0
         troubles = (*troubles, messages_refused(refused)) if refused else troubles
         given_up = tuple(Trouble("given_up", f"{name} is given up: {trouble.words}") for name, trouble in failed.items())
         state: State = "failed" if failed else "degraded" if troubles else "ok"
-        own = reporter.report(state, (*given_up, *troubles), machine=machine, supervisor=supervisor)
+        own = joined.reporter.report(state, (*given_up, *troubles), machine=machine, supervisor=supervisor)
         for name, trouble in failed.items():
             message = Health(name, own.pid, own.t_ns, "failed", (trouble,), cpu_cores=0.0, rss_mib=0.0)
-            bus.publish(topics.health(name), codec.encode(message))
+            joined.bus.publish(topics.health(name), codec.encode(message))
 
     def close(self) -> None:
         """Leave the bus."""
         self._leave()
 
-    def _leave(self) -> None:
-        self._stop.set()
-        self._opener.join()
-        bus, self._bus, self._subscription, self._beats, self._reporter = self._bus, None, None, None, None
-        if bus is not None:
-            bus.close()
-        self.present.clear()
+    def _begin(self, opener: Callable[[threading.Event], None]) -> threading.Event:
+        stop = threading.Event()
+        # No daemon: one that comes back from Zenoh while the interpreter ends aborts the process. All have ended by then, so that
+        # nobody is left who could keep it.
+        threading.Thread(target=opener, args=(stop,), name="bus").start()
+        return stop
 
-    def _open(self) -> None:
+    def _leave(self) -> None:
+        with self._changes:
+            self._stop.set()
+            joined, self._joined = self._joined, None
+        if joined is not None:
+            joined.bus.close()
+
+    def _open(self, stop: threading.Event) -> None:
         from services.bus.zenoh_bus import BusError, open_client  # noqa: PLC0415 - importing takes time in which processes can start
 
         # A link may break before all is declared on it. A supervisor that stayed deaf would take everybody for hung.
-        while self._bus is None and (bus := open_client(self._endpoint, self._stop)) is not None:
+        while (bus := open_client(self._endpoint, stop)) is not None:
             try:
-                self._join(bus)
+                self._join(bus, stop)
             except BusError:
                 bus.close()
-                self._stop.wait(_AGAIN_S)
+                stop.wait(_AGAIN_S)
+            else:
+                return
 
-    def _open_router(self) -> None:
+    def _open_router(self, stop: threading.Event) -> None:
         from services.bus.zenoh_bus import BusError, open_router  # noqa: PLC0415 - as above
 
-        while self._bus is None and not self._stop.is_set():
+        while not stop.is_set():
             try:
                 bus = open_router(self._endpoint)
             except UserError:  # What the dead process held is not free yet.
-                self._stop.wait(_AGAIN_S)
+                stop.wait(_AGAIN_S)
                 continue
             try:
-                self._join(bus)
+                self._join(bus, stop)
             except BusError:
                 bus.close()
+            else:
+                return
 
-    def _join(self, bus: Bus) -> None:
-        subscription = bus.subscribe(topics.ALL_HEALTH, keep=_KEEP)
+    def _join(self, bus: Bus, stop: threading.Event) -> None:
+        """Declare what the supervisor has on a bus, unless `stop` is set: then the bus that it was is not wanted any more."""
+        if stop.is_set():
+            bus.close()
+            return
+        present: set[str] = set()
+
+        def seen(topic: str, alive: bool) -> None:
+            (present.add if alive else present.discard)(topics.process_of(topic))
+
+        healths = bus.subscribe(topics.ALL_HEALTH, keep=_KEEP)
         beats = bus.subscribe(topics.ALL_BEATS, keep=1)
-        bus.watch_alive(topics.ALL_ALIVE, self._seen)
+        bus.watch_alive(topics.ALL_ALIVE, seen)
         bus.declare_alive(topics.alive(NAME))
-        self._reporter = HealthReporter(NAME, bus, ResourceMeter())
-        self._subscription, self._beats, self._bus = subscription, beats, bus
-
-    def _seen(self, topic: str, alive: bool) -> None:
-        (self.present.add if alive else self.present.discard)(topics.process_of(topic))
+        joined = _Joined(bus, healths, beats, present, HealthReporter(NAME, bus, ResourceMeter()))
+        with self._changes:
+            if not stop.is_set():
+                self._joined = joined
+                return
+        bus.close()

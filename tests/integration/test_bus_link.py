@@ -141,9 +141,11 @@ def returns(call: Callable[[], None]) -> bool:
 def test_the_end_of_the_box_does_not_wait_for_a_router_that_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
     router = SilentRouter(monkeypatch)
     link = BusLink("tcp/127.0.0.1:1")
-    assert router.asked.wait(DEADLINE_S)
-    assert returns(link.close), "close() waits for the router"
-    router.end()
+    try:
+        assert router.asked.wait(DEADLINE_S)
+        assert returns(link.close), "close() waits for the router"
+    finally:
+        router.end()
 
 
 def test_the_supervisor_takes_the_place_of_a_router_that_never_answered_without_waiting_for_it(
@@ -165,4 +167,5 @@ def test_the_supervisor_takes_the_place_of_a_router_that_never_answered_without_
         assert "edge-a" in link.present, "the session that opened late took the router's place"
         camera.close()
     finally:
+        router.goes_on.set()
         link.close()
