@@ -7,7 +7,20 @@ since the line was torn. Of a pass phrase of several words without quotes only t
 import re
 
 SECRET_KEYS = (
-    *("password", "passwd", "passphrase", "pwd", "secret", "token", "credential", "api_?key", "private_?key", "access_?key"),
+    *(
+        "password",
+        "passwd",
+        "passphrase",
+        "pass",
+        "pwd",
+        "pw",
+        "secret",
+        "token",
+        "credential",
+        "api_?key",
+        "private_?key",
+        "access_?key",
+    ),
     *("pin", "psk", "authorization", "bearer", "cookie"),
 )
 """As regular expressions."""
@@ -16,8 +29,11 @@ SECRET = "[secret]"  # noqa: S105 - what stands in for one
 _PARTS = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])|[-.\s]+")
 _NAMES_SECRET = re.compile(rf"(?:^|_)(?:{'|'.join(SECRET_KEYS)})s?\d*(?:$|_)", re.IGNORECASE)
 # Possessive, so that no text takes longer than its length. A text within a text has backslashes before its quotes.
+# What joins a key and its value: a sign; or a space, behind which is a quote, or before which is an option of a command line.
 _KEY = re.compile(
-    r"(?<![\w.-])(?:((?:(?:api|private|access)\s)?[\w.-]++)\\*+['\"]?\s*+(?:=>|:=|[=:])\s*+|bearer\s++)", re.IGNORECASE
+    r"(?<![\w.-])(?:((--)?(?:(?:api|private|access)\s)?[\w.-]++)"
+    r"(?:\\*+['\"]?\s*+(?:=>|:=|[=:])\s*+|\s++(?=\\*+['\"])|(?(2)\s++(?!--)|(?!)))|bearer\s++)",
+    re.IGNORECASE,
 )
 _QUOTE = re.compile(r"[bBrRuUfF]{0,2}(\\*+)(['\"])")
 _BACKSLASHES_AND_QUOTE = {quote: re.compile(rf"(\\*+){quote}") for quote in "'\""}

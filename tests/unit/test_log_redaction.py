@@ -60,6 +60,16 @@ def test_a_site_file_keeps_its_values_but_no_secret() -> None:
         ("asked with Bearer hunter2 and refused", "asked with Bearer [secret] and refused"),
         ("apiToken=hunter2&rate=3 X-Api-Key: hunter2 API key: hunter2", "apiToken=[secret] X-Api-Key: [secret] API key: [secret]"),
         ("login(password=b'hunter 2', tokens=['hunter', '2'])", "login(password=[secret], tokens=[secret])"),
+        (
+            "rtspsrc location=rtsp://cam/1 user-id=admin user-pw=hunter2 !",
+            "rtspsrc location=rtsp://cam/1 user-id=admin user-pw=[secret] !",
+        ),
+        ("cannot open rtsp://cam:554/?user=admin&pass=hunter2", "cannot open rtsp://cam:554/?user=admin&pass=[secret]"),
+        ("http://cam/snapshot.cgi?usr=admin&pwd=hunter2 refused", "http://cam/snapshot.cgi?usr=admin&pwd=[secret] refused"),
+        ("play --password hunter2 --token hunter2 --rate 3", "play --password [secret] --token [secret] --rate 3"),
+        ("play --ask-password --token hunter2", "play --ask-password --token [secret]"),
+        ("login of 'admin' using password 'hunter 2' failed", "login of 'admin' using password [secret] failed"),
+        ('{"event": "password \\"hunter 2\\" is wrong"}', '{"event": "password [secret] is wrong"}'),
         ("the token ring: 3 pinned, compass: north", "the token ring: 3 pinned, compass: north"),
     ],
 )
@@ -156,6 +166,9 @@ def test_nested_keypoints_in_the_fields_of_a_record_do_not_leave_the_box(keypoin
         "token='" * 5000,
         "token: [" * 5000,
         '\\"' * 9000,
+        "token '" * 4000,
+        "--token " * 4000,
+        f"--token{' ' * 20000}--",
     ],
 )
 def test_no_text_holds_up_an_export(said: str) -> None:
