@@ -7,21 +7,8 @@ since the line was torn. Of a pass phrase of several words without quotes only t
 import re
 
 SECRET_KEYS = (
-    *(
-        "password",
-        "passwd",
-        "passphrase",
-        "pass",
-        "pwd",
-        "pw",
-        "secret",
-        "token",
-        "credential",
-        "api_?key",
-        "private_?key",
-        "access_?key",
-    ),
-    *("pin", "psk", "authorization", "bearer", "cookie"),
+    *("password", "passwd", "passphrase", "pass", "pwd", "pw", "pin", "psk"),
+    *("secret", "token", "credential", "api_?key", "private_?key", "access_?key", "authorization", "bearer", "cookie"),
 )
 """As regular expressions."""
 SECRET = "[secret]"  # noqa: S105 - what stands in for one
