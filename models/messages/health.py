@@ -142,8 +142,8 @@ class Health(msgspec.Struct, frozen=True):
 
     Attributes:
         process: "edge-<camera>", "fusion", "tablet", "recorder", "supervisor", or "replay" in the place of the first two.
-        state: "starting" (its loop has yet to begin, for which it has as much time as it needs), "ok", "degraded" (works, less than
-            wished), "failed" (does not work any more).
+        state: "starting" (its loop has yet to begin; for up to ten minutes it is not taken for hung), "ok", "degraded" (works, less
+            than wished), "failed" (does not work any more).
         troubles: why it is not "ok"; empty if and only if it is.
         cpu_cores: CPU seconds a second of this process.
     """

@@ -39,7 +39,10 @@ def health(process: str) -> str:
 
 
 def beat(process: str) -> str:
-    """processes whose silence is noticed at once -> supervisor; the payload is the process's id in decimal digits"""
+    """processes whose silence is noticed at once -> supervisor
+
+    The payload is the process's id in decimal digits, and " ends" behind it in the last beat of a process that ends of itself.
+    """
     return f"{ROOM}/beat/{process}"
 
 

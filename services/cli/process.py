@@ -2,13 +2,15 @@
 
 import contextlib
 import sys
+import threading
 import time
 from dataclasses import dataclass
+from importlib.metadata import EntryPoint
 from pathlib import Path
 
 from models.errors import UserError
 from models.process import EDGE, ROUTERS, SPARE_READY, Bus, Playback, ProcessContext, process_name
-from services.cli.parts import find_process, load_process
+from services.cli.parts import Process, find_process, load_process
 from services.site_file.reading import read_site
 from services.support.getting_ready import getting_ready
 from services.support.health import ResourceMeter
@@ -48,22 +50,12 @@ def run_process(order: ProcessOrder) -> None:
     site, rig = read_site(order.site)
     _require_camera(order, rig.names)
     entry = find_process(order.entry)
-    from services.bus.zenoh_bus import BusError, open_client, open_router  # noqa: PLC0415 - a wrong site file shall not wait for it
+    from services.bus.zenoh_bus import BusError  # noqa: PLC0415 - a wrong site file shall not wait for it
 
-    bus: Bus | None
-    routes = order.entry in ROUTERS
-    if routes and not order.spare:
-        # The router first, because everybody waits for it.
-        bus = open_router(site.bus.endpoint)
-        with getting_ready(order.name, bus):
-            main = load_process(entry)
-    else:
-        main = load_process(entry)
-        if order.spare and not _is_called():
-            return
-        bus = open_router(site.bus.endpoint) if routes else open_client(site.bus.endpoint, stop)
-    if bus is None:
+    ready = _load_and_join(order, entry, site.bus.endpoint, stop)
+    if ready is None:
         return
+    main, bus = ready
     heartbeat = Heartbeat(order.name, bus)
     context = ProcessContext(
         name=order.name,
@@ -84,6 +76,23 @@ def run_process(order: ProcessOrder) -> None:
         with contextlib.suppress(BusError):  # Who cannot say that it ends ends all the same.
             heartbeat.last()
         bus.close()
+
+
+def _load_and_join(order: ProcessOrder, entry: EntryPoint, endpoint: str, stop: threading.Event) -> tuple[Process, Bus] | None:
+    """The process's main function and the bus; None if the process is told to stop, or its post never falls vacant."""
+    from services.bus.zenoh_bus import open_client, open_router  # noqa: PLC0415 - as above
+
+    routes = order.entry in ROUTERS
+    if routes and not order.spare:
+        # The router first, because everybody waits for it.
+        router = open_router(endpoint)
+        with getting_ready(order.name, router):
+            return load_process(entry), router
+    main = load_process(entry)
+    if order.spare and not _is_called():
+        return None
+    bus = open_router(endpoint) if routes else open_client(endpoint, stop)
+    return None if bus is None else (main, bus)
 
 
 def _is_called() -> bool:

@@ -21,7 +21,7 @@ from services.support.machine import clocks_ns
 from services.support.version import kinebox_version
 
 KEEP = 64
-"""Unread parts: half a minute, for which a slow disk may hold the recorder up."""
+"""Unread parts: fusion sends up to 40 (20 s) again in one go, and new ones come in between."""
 _ROUND_S = 0.25
 
 log = structlog.get_logger()

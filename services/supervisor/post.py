@@ -31,6 +31,8 @@ class Post:
         first_heard_s: when the running process spoke first, on CLOCK_MONOTONIC; None if it has not.
         ended_s: when it ended last or could not be started, on CLOCK_MONOTONIC; None if it never did.
         last_end: what became of it then, as a verb.
+        hangs: the running process was found hung, and is being killed for it.
+        history: its restarts until now, by which it is decided whether there is another.
     """
 
     spec: ChildSpec
