@@ -181,8 +181,9 @@ def test_a_full_house_is_said_to_be_full(room: Room) -> None:
 def test_broken_bus_messages_are_counted_and_reported(room: Room) -> None:
     bus = room.join_bus()
     reports = bus.subscribe(topics.health("tablet"), keep=10)
-    bus.publish(topics.motion("live"), b"\x01\x02 broken")
-    bus.publish(topics.health("edge-cam0"), b"")
+    # Of processes that say nothing else: a newer message of the same topic may take the place of one that was not read yet.
+    bus.publish(topics.health("one"), b"\x02\x02 broken")
+    bus.publish(topics.health("other"), b"")
     until(room, "rejected_bus_messages", 2)
     said = [next_health(reports)]
     while not (said[-1].state == "ok" and any(health.state == "degraded" for health in said)):
