@@ -31,7 +31,7 @@ test: setup $(DATA)/footage/installed.json $(DATA)/footage2/installed.json ## Ev
 
 check: $(VENV)/.ready ## Formatting, types, import boundaries and the fast tests; under a minute
 	@$(MAKE) --no-print-directory lint
-	$(PYTHON) -m pytest -q -m "not slow and not browser"
+	$(PYTHON) -m pytest -q -n 2 --dist loadfile -m "not slow and not browser"
 
 .PHONY: lint
 lint: $(VENV)/.ready
