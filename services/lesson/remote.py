@@ -16,8 +16,10 @@ from models.process import RECORDER, Bus, Subscription
 from services.bus import join as bus_join
 
 CONNECT_S = 3.0
-HEARD_WITHIN_S = 5.0
-"""Health comes every second; a recorder that is being restarted needs a few."""
+HEARD_WITHIN_S = 15.0
+"""The recorder starts last, up to five seconds after the others, and a busy machine takes as long again."""
+BOX_HEARD_WITHIN_S = 5.0
+"""Health comes every second from every process; the one that routes the bus needs no longer to be connected."""
 DONE_WITHIN_S = 20.0
 """A box that starts or is busy may take as long until fusion begins anew for a lesson."""
 _REPEAT_S = 1.0
@@ -79,7 +81,9 @@ class Remote:
 
     def _current(self) -> RecorderHealth:
         """What the recorder does now."""
-        health = self.listen(HEARD_WITHIN_S)
+        health = self.listen(BOX_HEARD_WITHIN_S)
+        if health is None and self._someone:
+            health = self.listen(HEARD_WITHIN_S - BOX_HEARD_WITHIN_S)
         if health is None:
             whom = "the box's recorder is not heard" if self._someone else "no part of the box is heard"
             raise UserError(f"{whom}; see what 'kinebox run' says about it, or start the box again")

@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,6 +23,8 @@ from tests.synthetic.gym_lesson import gym_header
 
 pytestmark = pytest.mark.slow
 
+RECORDER_STARTS_LATE_S = 8.0
+"""After the others, as in a box whose first pictures are slow."""
 COMMAND = (sys.executable, "-m", "services.cli.main")
 
 
@@ -96,6 +99,17 @@ def test_a_lesson_is_begun_and_left_seen_to_run_and_ended_from_elsewhere(tmp_pat
         assert "is not finished" in refusal(kinebox("lessons", "delete", lesson, "--data", str(box.data), "--yes"))
         assert record(box, "--stop").stdout.startswith(f"recorded {box.lessons / lesson}.mcap")
         until(lambda: not part.exists(), "the lesson to be finished")
+
+
+def test_a_lesson_asked_for_before_the_recorder_has_started_is_recorded_once_it_has(tmp_path: Path) -> None:
+    with Box(tmp_path, LessonsConfig()).running() as box:
+        words = [*COMMAND, "record", "--site", str(box.site), "--data", str(box.data), "--for", "1s"]
+        with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT) as process:
+            time.sleep(RECORDER_STARTS_LATE_S)
+            with box.recorder():
+                out, errors = process.communicate(timeout=60)
+        assert process.returncode == 0, errors
+        assert "\nrecorded " in out
 
 
 def test_a_lesson_whose_file_was_removed_is_not_said_to_be_recorded(tmp_path: Path) -> None:
