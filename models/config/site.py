@@ -12,6 +12,9 @@ from models.errors import UserError
 SITE_VERSION = 2
 """Raised together with a new step in `models.config.migrations`."""
 
+MAX_LATE_S = 5.0
+"""Pictures that are late wait in memory."""
+
 Name = Annotated[str, Meta(pattern=r"^[a-z0-9][a-z0-9_-]{0,31}$", description="lower-case letters, digits, - and _")]
 
 
@@ -93,16 +96,27 @@ class FaultConfig(Section, frozen=True):
 
     camera: Annotated[Name, Meta(description="the camera that falls ill")]
     kind: Annotated[
-        Literal["end", "stall", "repeat", "jump"],
+        Literal["end", "stall", "repeat", "jump", "drift", "drop", "late", "dark"],
         Meta(
             description="end: it is gone and cannot be opened; stall: it shows nothing; repeat: it shows one picture again and "
-            "again; jump: its clock is wrong by `by_s`"
+            "again; jump: its clock is wrong by `by_s`; drift: its clock goes wrong by `ppm`; drop: a `share` of its pictures is "
+            "lost; late: a `share` of its pictures arrives `by_s` after their time; dark: its lens is covered"
         ),
     ]
     at_s: Annotated[float, Meta(ge=0, description="seconds after the start of the box")]
     for_s: Annotated[float, Meta(gt=0, description="how long it lasts")]
     every_s: Annotated[float, Meta(ge=0, description="it comes again so many seconds after it began; 0: it comes once")] = 0.0
-    by_s: Annotated[float, Meta(ge=-1e6, le=1e6, description="how far a clock jumps, forwards positive")] = 5.0
+    by_s: Annotated[
+        float, Meta(ge=-1e6, le=1e6, description="how far a clock jumps, forwards positive, or how late pictures are")
+    ] = 5.0
+    ppm: Annotated[float, Meta(ge=-10_000, le=10_000, description="millionths by which a clock that drifts is too fast")] = 50.0
+    share: Annotated[
+        float, Meta(gt=0, le=1, description="of the pictures that are lost or late, which ones by lot, the same in every run")
+    ] = 1.0
+
+    def __post_init__(self) -> None:
+        if self.kind == "late" and not 0 < self.by_s <= MAX_LATE_S:
+            raise ValueError(f"a fault of kind late needs by_s of more than 0 and at most {MAX_LATE_S:g}")
 
 
 class Site(Section, frozen=True):

@@ -72,8 +72,7 @@ def film(faults: list[FaultConfig], seconds: float, video: Video = VIDEO) -> Sho
 
 
 def fault(kind: str, **more: float) -> FaultConfig:
-    made = {"end": "end", "stall": "stall", "repeat": "repeat", "jump": "jump"}[kind]
-    return FaultConfig(camera="cam01", kind=made, at_s=2.0, for_s=1.5, **more)  # type: ignore[arg-type]
+    return FaultConfig(camera="cam01", kind=kind, at_s=2.0, for_s=1.5, **more)  # type: ignore[arg-type]
 
 
 def test_a_healthy_camera_is_not_interfered_with() -> None:
@@ -130,16 +129,97 @@ def test_a_camera_whose_clock_stays_wrong_is_opened_again() -> None:
     assert any("opened again" in problem for problem in shown.problems)
 
 
-KINDS = st.sampled_from(["end", "stall", "repeat", "jump"])
+def pictures(faults: list[FaultConfig], seconds: float = 5.0, seed: int = 0) -> list[tuple[int, Frame]]:
+    """What the faults let through, with the instant of its arrival, to whoever grabs all the time and refuses nothing."""
+    clock, seen = VirtualClock(), list[tuple[int, Frame]]()
+    source = FaultySource(VideoSource(VIDEO, Schedule(START_NS, 0, 30.0), clock), Script(faults, START_NS, seed), clock)
+    while clock.t_ns < START_NS + seconds * SECOND_NS:
+        if (frame := source.grab(GRAB_TIMEOUT_S)) is not None:
+            seen.append((clock.t_ns, frame))
+    return seen
+
+
+def number(frame: Frame) -> int:
+    return frame.epoch * len(VIDEO.pictures) + frame.index
+
+
+def test_the_pictures_that_are_lost_are_the_same_in_every_run_of_a_seed_and_as_many_as_asked_for() -> None:
+    lossy = fault("drop", share=0.3)
+    kept = [number(frame) for _, frame in pictures([lossy])]
+    again, other = pictures([lossy]), pictures([lossy], seed=1)
+    lost = set(range(150)) - set(kept)
+    assert kept == [number(frame) for _, frame in again]
+    assert kept != [number(frame) for _, frame in other]
+    assert lost <= set(range(60, 105)), "none but those that were taken while the fault was due"
+    assert 5 <= len(lost) <= 23, "of 45"
+
+
+def test_a_camera_that_loses_every_picture_shows_nothing_for_as_long_and_is_not_skipped() -> None:
+    shown = {number(frame) for _, frame in pictures([fault("drop")])}
+    assert shown & set(range(150)) == {*range(60), *range(105, 150)}
+
+
+def test_late_pictures_arrive_exactly_so_much_later_at_full_rate_and_keep_their_times() -> None:
+    for at_ns, frame in pictures([fault("late", by_s=0.25)]):
+        late_ns = at_ns - frame.t_mid_ns
+        if 60 <= number(frame) < 105:
+            assert late_ns == pytest.approx(0.25 * SECOND_NS, abs=2)
+        elif number(frame) < 60 or number(frame) > 113:
+            assert late_ns <= 2
+        assert frame.t_mid_ns == pytest.approx(START_NS + number(frame) * SECOND_NS / 30, abs=2)
+    numbers = [number(frame) for _, frame in pictures([fault("late", by_s=0.25)])]
+    assert numbers == sorted(numbers), "the order of a cable"
+
+
+def test_a_picture_that_is_late_holds_up_those_behind_it() -> None:
+    seen = pictures([fault("late", by_s=0.1, share=0.2)])
+    assert [number(frame) for _, frame in seen[:60]] == list(range(60))
+    assert all(earlier <= later for (earlier, _), (later, _) in pairwise(seen))
+
+
+def test_a_clock_drifts_by_so_many_millionths_from_the_moment_that_it_begins_to() -> None:
+    for _, frame in pictures([fault("drift", ppm=-400.0)]):
+        truth_ns = START_NS + number(frame) * SECOND_NS / 30
+        since_ns = truth_ns - START_NS - 2 * SECOND_NS if 60 <= number(frame) < 105 else 0
+        assert frame.t_mid_ns - truth_ns == pytest.approx(-400e-6 * since_ns, abs=2)
+
+
+def test_an_offset_and_a_drift_of_one_clock_add_up() -> None:
+    both = [fault("jump", by_s=0.02), fault("drift", ppm=1000.0)]
+    frame = next(frame for _, frame in pictures(both) if number(frame) == 90)
+    assert frame.t_mid_ns - START_NS - 3 * SECOND_NS == pytest.approx(0.021 * SECOND_NS, abs=2)
+
+
+def test_a_covered_lens_shows_black_pictures_of_the_same_size_at_the_same_rate() -> None:
+    seen = pictures([fault("dark")])
+    assert [number(frame) for _, frame in seen[:150]] == list(range(150))
+    for _, frame in seen[50:70]:
+        assert frame.image(2).shape == (24, 32, 3)
+        assert (frame.image().max() == 0) == (number(frame) >= 60)
+
+
+def test_pictures_cannot_arrive_before_they_are_taken() -> None:
+    with pytest.raises(ValueError, match="late needs by_s"):
+        fault("late", by_s=-0.1)
+
+
+KINDS = st.sampled_from(["end", "stall", "repeat", "jump", "drift", "drop", "late", "dark"])
+
+
+def _some_fault(kind: str, at_s: float, by_s: float, **more: float) -> FaultConfig:
+    by_s = abs(by_s) + 0.01 if kind == "late" else by_s
+    return FaultConfig(camera="cam01", kind=kind, at_s=at_s, by_s=by_s, **more)  # type: ignore[arg-type]
+
+
 FAULTS = st.lists(
     st.builds(
-        FaultConfig,
-        camera=st.just("cam01"),
+        _some_fault,
         kind=KINDS,
         at_s=st.floats(0, 8),
+        by_s=st.floats(-4.9, 4.9),
         for_s=st.floats(0.01, 3),
         every_s=st.sampled_from([0.0, 4.0]),
-        by_s=st.floats(-5, 5),
+        share=st.floats(0.1, 1),
     ),
     max_size=4,
 )
