@@ -16,7 +16,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks footage web bytecode kernels body check-body lock clean distclean test-faults test-mutations bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons
+.PHONY: help run test check setup networks footage web bytecode kernels body check-body motions check-motions lock clean distclean test-faults test-mutations bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
@@ -135,6 +135,18 @@ body: build/body/.ready ## Export the body's files anew (they are in the reposit
 check-body: build/body/.ready ## Compare the body's files with a fresh export
 	$(BODY_EXPORT) --check
 
+build/motions/.ready: models/motions/build/requirements.lock
+	@echo "Installing the motions' exporter in an environment of its own ..."
+	@python3 -m venv $(@D)
+	@$(@D)/bin/pip install --disable-pip-version-check --quiet --require-hashes -r $<
+	@touch $@
+
+motions: build/motions/.ready ## Export the recorded motion anew (it is in the repository; only its maintainers need this)
+	build/motions/bin/python -m models.motions.build.export
+
+check-motions: build/motions/.ready ## Compare the recorded motion with a fresh export
+	build/motions/bin/python -m models.motions.build.export --check
+
 lock: ## Compile requirements.lock anew after a change of pyproject.toml
 	$(PYTHON) -m venv build/lock && build/lock/bin/pip install --quiet uv
 	build/lock/bin/uv pip compile pyproject.toml --extra web --extra dev --universal --python-version 3.11 \
@@ -144,4 +156,4 @@ clean: ## Remove what was built, but not the downloads' results
 	rm -rf $(WEB)/dist $(DATA)/kernels $(DATA)/bytecode.ready $(DATA)/bench $(DATA)/logs .mypy_cache .ruff_cache .pytest_cache
 
 distclean: clean ## Remove everything that was installed or downloaded, too
-	rm -rf $(VENV) $(DATA)/networks $(FOOTAGES:%=$(DATA)/%) build/peers build/lock build/body $(WEB)/node_modules *.egg-info .hypothesis .import_linter_cache
+	rm -rf $(VENV) $(DATA)/networks $(FOOTAGES:%=$(DATA)/%) build/peers build/lock build/body build/motions $(WEB)/node_modules *.egg-info .hypothesis .import_linter_cache
