@@ -21,7 +21,7 @@ from models.camera.rig import Rig, decode_rig
 from models.messages.motion import JointState
 from models.skeleton import coco
 from services.calibration.shift import solve_shifts
-from tests.bench.figures import inside, limb_variation_pct, peak_speed_m_s, reprojection_px
+from tests.bench.boxes import inside
 from tests.bench.footage_run import (
     CONFIG,
     FLUSH_FRAMES,
@@ -34,6 +34,9 @@ from tests.bench.footage_run import (
     pupil_keypoints,
     reconstruct,
 )
+from tests.bench.metrics.limbs import limb_variation_pct
+from tests.bench.metrics.reprojection import reprojection_px
+from tests.bench.metrics.steadiness import peak_speed_m_s
 from tests.bench.peers.answer import Answer, Keypoints
 from tests.bench.peers.pose2sim_project import run_pose2sim
 from tests.bench.report import Report

@@ -18,9 +18,10 @@ from edge.footage.sets import TWO_PEOPLE
 from models.arrays import Float
 from models.camera.rig import Rig, decode_rig
 from models.skeleton import coco
-from tests.bench.figures import inside, reprojection_px
+from tests.bench.boxes import inside
 from tests.bench.footage import FULL_WIDTH_PX, MIN_SCORE, TESTED, accuracy, frames_without_pose, suffixed
 from tests.bench.footage_run import RATE_HZ, Reconstruction, load_videos, look, pupil_keypoints, reconstruct
+from tests.bench.metrics.reprojection import reprojection_px
 from tests.bench.report import Report
 
 RIG = Path("deploy/sites/footage2/rig.toml")

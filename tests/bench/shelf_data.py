@@ -1,8 +1,7 @@
 """The Shelf frames that we may measure on: cameras, candidates, ground truth, and PCP-3D.
 
-Source: Belagiannis et al., "3D Pictorial Structures for Multiple Human Pose Estimation", CVPR 2014. PCP-3D: a part is right if the
-mean distance of its two ends from the true ones is at most half the part's true length. Ten parts: eight limbs, the torso from
-the base of the head to the pelvis, and the head.
+Source: Belagiannis et al., "3D Pictorial Structures for Multiple Human Pose Estimation", CVPR 2014. PCP-3D of ten parts: eight
+limbs, the torso from the base of the head to the pelvis, and the head.
 """
 
 import gzip
@@ -18,11 +17,11 @@ from models.camera.pinhole import Camera
 from models.camera.rig import Rig
 from models.errors import UserError
 from models.skeleton import coco
+from tests.bench.metrics.correctness import right_parts as right_parts_of
 from tests.bench.openpose import Picture
 
 FIRST_IMAGE: Final = 300
 RATE_HZ: Final = 25.0
-ALPHA: Final = 0.5
 PARTS: Final = {
     "right_shank": (0, 1),
     "right_thigh": (1, 2),
@@ -143,8 +142,4 @@ def right_parts(truth_m: Float, persons_m: list[Float]) -> Bool:
     nearest = nearest_person(truth_m, persons_m)
     if nearest is None:
         return np.zeros(len(PARTS), np.bool_)
-    ends = np.array(list(PARTS.values()))
-    distances = np.linalg.norm(persons_m[nearest] - truth_m, axis=1)
-    lengths = np.linalg.norm(truth_m[ends[:, 0]] - truth_m[ends[:, 1]], axis=1)
-    right: Bool = distances[ends].mean(axis=1) <= ALPHA * lengths
-    return right
+    return right_parts_of(persons_m[nearest], truth_m, np.array(list(PARTS.values())))

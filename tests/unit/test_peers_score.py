@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from models.messages.observation import Observation
+from tests.bench.metrics.position import margin_pct
 from tests.bench.peers.clips import FRAMES, make_clip
-from tests.bench.peers.score import margin_pct, score_all
+from tests.bench.peers.score import score_all
 from tests.synthetic.gym import T0_NS
 
 TRUTH = np.zeros((20, 13, 3))

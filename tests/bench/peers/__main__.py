@@ -21,13 +21,15 @@ from rich.table import Table
 from models.arrays import Float
 from models.camera.rig import decode_rig
 from models.skeleton import coco
-from tests.bench.figures import limb_variation_pct, reprojection_px
 from tests.bench.footage import FULL_WIDTH_PX, MIN_SCORE, RIG, TESTED, for_peers
 from tests.bench.footage_run import FLUSH_FRAMES, RATE_HZ, load_videos, look, pupil_keypoints, reconstruct
+from tests.bench.metrics.limbs import limb_variation_pct
+from tests.bench.metrics.position import margin_pct
+from tests.bench.metrics.reprojection import reprojection_px
 from tests.bench.peers import aniposelib_group, ours, pose2sim_project
 from tests.bench.peers.answer import Answer, Keypoints
 from tests.bench.peers.clips import MOTIONS, Clip, make_clip
-from tests.bench.peers.score import Score, margin_pct, score_all
+from tests.bench.peers.score import Score, score_all
 from tests.bench.report import Report
 
 SEEDS = range(5)

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.arrays import Bool, Float
+from tests.bench.metrics.position import position_error
+from tests.bench.metrics.steadiness import acceleration_error_mm
 
 
 @dataclass(frozen=True)
@@ -26,9 +28,6 @@ class Score:
     frames_without_pose: int
 
 
-MIN_JOINTS = 9
-
-
 def score_all(joints_m: Mapping[str, Float], truth_m: Mapping[str, Float]) -> dict[str, Score]:
     """Score methods against one another's coverage, so that nobody gains by leaving out what is hard.
 
@@ -37,23 +36,17 @@ def score_all(joints_m: Mapping[str, Float], truth_m: Mapping[str, Float]) -> di
         truth_m: by method, (frames, joints, 3) the truth at the method's own instants.
     """
     claimed: dict[str, Bool] = {method: np.asarray(np.isfinite(joints).all(axis=-1)) for method, joints in joints_m.items()}
-    common = np.stack(list(claimed.values())).all(axis=0)
-    return {method: _score(joints_m[method] - truth_m[method], claimed[method], np.asarray(common)) for method in joints_m}
+    common = np.asarray(np.stack(list(claimed.values())).all(axis=0))[..., None]
+    return {method: _score(joints_m[method], truth_m[method], common) for method in joints_m}
 
 
-def _score(error_m: Float, claimed: Bool, common: Bool) -> Score:
-    distance = 1e3 * np.linalg.norm(error_m, axis=-1)[common]
-    lasting = common[2:] & common[1:-1] & common[:-2]
-    acceleration = 1e3 * np.linalg.norm(np.diff(error_m, n=2, axis=0), axis=-1)[lasting]
+def _score(joints_m: Float, truth_m: Float, common: Bool) -> Score:
+    own, shared = position_error(joints_m, truth_m), np.where(common, joints_m, np.nan)
+    error = position_error(shared, truth_m)
     return Score(
-        mpjpe_mm=float(distance.mean()),
-        p95_mm=float(np.percentile(distance, 95)),
-        acc_error_mm=float(acceleration.mean()),
-        missing_pct=float(100 * (~claimed).mean()),
-        frames_without_pose=int((claimed.sum(axis=1) < MIN_JOINTS).sum()),
+        mpjpe_mm=error.mpjpe_mm,
+        p95_mm=error.p95_mm,
+        acc_error_mm=acceleration_error_mm(shared, truth_m),
+        missing_pct=own.missing_pct,
+        frames_without_pose=len(own.without_pose),
     )
-
-
-def margin_pct(ours: float, theirs: float) -> float:
-    """How much smaller our error is, in percent of theirs."""
-    return 100 * (1 - ours / theirs)
