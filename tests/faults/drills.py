@@ -179,7 +179,10 @@ def _newer(stage: Stage, fault_s: float) -> bool:
 
 
 def _alive(process: psutil.Process) -> bool:
-    return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
+    try:
+        return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:  # it was waited for between the two questions
+        return False
 
 
 def source_drill(kind: str) -> Callable[[Stage], Outcome]:
