@@ -8,6 +8,10 @@ DATA   ?= build
 SITE   ?= deploy/sites/$(SOURCE)/site.toml
 SHARED ?= ../shared/data
 
+ifneq ($(words $(DATA)),1)
+$(error DATA is '$(DATA)': make knows no folder with a space in its name; name another folder)
+endif
+
 VENV   := .venv
 PYTHON := $(VENV)/bin/python
 WEB    := services/tablet/web
