@@ -1,4 +1,4 @@
-"""Writes a benchmark's figures to `build/bench/<target>.json` and prints its table. Figures' names are fixed for good."""
+"""Prints a benchmark's figures and tables and writes them to `build/bench/<target>.json` and `.md`. Names are fixed for good."""
 
 import json
 import math
@@ -15,6 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from services.support.processor import processor
+from tests.bench.table import Cell, ResultTable, Spread, shown, spread
 
 _COMPARISONS: dict[str, Callable[[float, float], bool]] = {
     ">=": lambda value, bar: value >= bar,
@@ -25,20 +26,41 @@ _COMPARISONS: dict[str, Callable[[float, float], bool]] = {
 
 @dataclass
 class Report:
-    """Figures and rows of one benchmark run. A figure that could not be measured is left out, never zero."""
+    """Figures, rows and tables of one benchmark run. A figure that could not be measured is left out, never zero.
+
+    Attributes:
+        target: name of the benchmark.
+        seeds: of what is drawn by chance.
+        figures: by name; of those that are means over seeds, `deviations` has the standard deviation.
+        rows: further values for programs.
+        tables: further values for people, and for programs, too.
+        bars: what figures are held against, as (">=", "<=" or "within", value).
+    """
 
     target: str
     seeds: Sequence[int] = ()
     figures: dict[str, float] = field(default_factory=dict)
     rows: list[dict[str, Any]] = field(default_factory=list)
+    deviations: dict[str, float] = field(default_factory=dict)
+    tables: list[ResultTable] = field(default_factory=list)
+    bars: Mapping[str, tuple[str, float]] = field(default_factory=dict)
     started_s: float = field(default_factory=time.monotonic)
 
     def add(self, figures: Mapping[str, float], prefix: str = "") -> None:
         """Take figures over, leaving out those that are not numbers."""
         self.figures |= {prefix + name: float(value) for name, value in figures.items() if math.isfinite(value)}
 
+    def add_seeds(self, by_seed: Sequence[Mapping[str, float]], prefix: str = "") -> None:
+        """Take over the means of figures that each seed has, with their deviations; one that a seed lacks is left out."""
+        for name in by_seed[0] if by_seed else ():
+            values = spread([figures.get(name, math.nan) for figures in by_seed])
+            if values is not None:
+                self.figures[prefix + name] = values.mean
+                if math.isfinite(values.deviation):
+                    self.deviations[prefix + name] = values.deviation
+
     def write(self, data: Path) -> Path:
-        """Write the file and return its path."""
+        """Write both files; returns the path of the .json."""
         path = data / "bench" / f"{self.target}.json"
         path.parent.mkdir(parents=True, exist_ok=True)
         document = {
@@ -48,24 +70,38 @@ class Report:
             "seeds": list(self.seeds),
             "seconds": round(time.monotonic() - self.started_s, 1),
             "figures": self.figures,
+            "deviations": self.deviations,
             "rows": self.rows,
+            "tables": [table.as_json() for table in self.tables],
         }
         path.write_text(json.dumps(document, indent=1) + "\n")
+        heading = f"## {self.target}\n\n{document['machine']}; commit {document['commit']}; {document['seconds']:.0f} s"
+        seeds = f"; seeds {', '.join(map(str, self.seeds))}, mean ± deviation\n" if self.seeds else "\n"
+        tables = "\n".join(table.as_markdown() for table in (self.summary(), *self.tables))
+        path.with_suffix(".md").write_text(f"{heading}{seeds}\n{tables}")
         return path
 
+    def summary(self) -> ResultTable:
+        """All figures, each beside its bar."""
+        rows: list[tuple[Cell, ...]] = []
+        for name, value in self.figures.items():
+            sign, limit = self.bars.get(name, ("", math.nan))
+            met = "" if not sign else "met" if _COMPARISONS[sign](value, limit) else "missed"
+            cell = Spread(value, self.deviations.get(name, math.nan), len(self.seeds))
+            rows.append((name, cell, f"{sign} {limit:g}" if sign else "", met))
+        return ResultTable("figures", ("figure", "value", "bar", "met"), tuple(rows))
+
     def show(self, bars: Mapping[str, tuple[str, float]]) -> None:
-        """Print the figures; `bars` gives for some of them a bar as (">=", "<=" or "within", value), printed as met or missed."""
+        """Print the figures, those in `bars` as met or missed, and the tables."""
+        self.bars = bars
+        console = Console(width=max(110, Console().width))
         table = Table(title=f"{self.target} on {machine()}")
         for column in ("figure", "value", "bar", ""):
             table.add_column(column, justify="right" if column == "value" else "left")
-        for name, value in self.figures.items():
-            bar = bars.get(name)
-            if bar is None:
-                table.add_row(name, f"{value:.4g}", "", "")
-                continue
-            met = _COMPARISONS[bar[0]](value, bar[1])
-            table.add_row(name, f"{value:.4g}", f"{bar[0]} {bar[1]:g}", "met" if met else "[bold]missed[/bold]")
-        Console(width=110).print(table)
+        for name, value, bar, met in self.summary().rows:
+            table.add_row(shown(name), shown(value), shown(bar), "[bold]missed[/bold]" if met == "missed" else shown(met))
+        for each in (table, *(result.for_terminal() for result in self.tables)):
+            console.print(each)
 
 
 def machine() -> str:
