@@ -1,0 +1,54 @@
+"""A room in which a recorder records: what fusion says, the clock and the disk are the test's own."""
+
+from pathlib import Path
+
+import pytest
+
+from models.config.site import LessonsConfig
+from models.messages.trouble import one_line
+from services.lesson import recorder as module
+from services.lesson.folder_lock import lock
+from services.lesson.lesson_file import LessonWriter
+from services.lesson.lesson_header import LessonHeader
+from services.lesson.recorder import Recorder
+from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
+
+
+class Room:
+    """Also what the recorder says of itself."""
+
+    def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch, *, automatic: bool = False) -> None:
+        self.now_ns = BEGIN_NS
+        self.free_mb = 10_000.0
+        self.folder = folder
+        lock(folder).close()
+        monkeypatch.setattr(module, "free_disk_mib", lambda _folder: self.free_mb * 1e6 / 2**20)
+        self.recorder = self.started(automatic=automatic)
+
+    def started(self, unfinished: LessonWriter | None = None, *, automatic: bool = False) -> Recorder:
+        config = LessonsConfig(automatic=automatic)
+        return Recorder(self.folder, config, self._header, unfinished, lambda: self.now_ns)
+
+    def record(self, parts: int) -> None:
+        request = self.recorder.look_after()
+        assert request is not None
+        for k in range(request.sequence, request.sequence + parts):
+            self.now_ns += SECOND_NS // 2
+            self.recorder.take(part(request.segment_ns or request.t_ns + 1, k))
+
+    def fusion_begins_anew(self) -> None:
+        segment_ns = self.now_ns + 1
+        self.now_ns += SECOND_NS
+        self.recorder.take(part(segment_ns, 0))
+
+    def files(self, suffix: str) -> list[str]:
+        return sorted(path.name for path in self.folder.iterdir() if path.name.endswith(suffix))
+
+    @property
+    def trouble(self) -> str:
+        """The recorder's trouble as people read it."""
+        trouble = self.recorder.trouble
+        return "" if trouble is None else one_line((trouble,))
+
+    def _header(self, title: str) -> LessonHeader:
+        return header(title)
