@@ -1,0 +1,201 @@
+"""What the graphics library runs, in GLSL. Row 0 of a picture is row 0 of a buffer; pixel centres are at whole numbers."""
+
+from typing import Final
+
+VERSION: Final = "#version 430\n"
+
+LENS: Final = """
+uniform mat3 rotation;
+uniform vec3 translation;
+uniform float focal[5];      // fx, skew, cx, fy, cy
+uniform float distortion[5]; // k1, k2, p1, p2, k3
+uniform float field_limit;
+uniform vec2 size;
+uniform vec4 window;         // the part of the picture that is drawn: first pixel, number of pixels
+uniform vec2 near_far;
+
+vec2 to_pixel(vec3 local) {
+    vec2 n = local.xy / local.z;
+    float r = length(n), l2 = field_limit * field_limit, beyond = 0.0;
+    if (r > field_limit) {
+        beyond = (r - field_limit) / field_limit
+            * (1.0 + l2 * (3.0 * distortion[0] + l2 * (5.0 * distortion[1] + l2 * 7.0 * distortion[4])));
+        n *= field_limit / r;
+    }
+    float r2 = dot(n, n);
+    float radial = 1.0 + r2 * (distortion[0] + r2 * (distortion[1] + r2 * distortion[4])) + beyond;
+    vec2 d = n * radial + vec2(
+        2.0 * distortion[2] * n.x * n.y + distortion[3] * (r2 + 2.0 * n.x * n.x),
+        distortion[2] * (r2 + 2.0 * n.y * n.y) + 2.0 * distortion[3] * n.x * n.y);
+    return vec2(focal[0] * d.x + focal[1] * d.y + focal[2], focal[3] * d.y + focal[4]);
+}
+
+vec4 to_clip(vec3 local) {
+    vec2 pixel = local.z >= near_far.x ? to_pixel(local)
+        // Behind: without the lens, on the same line through the camera, for the near plane to cut off.
+        : vec2(focal[0] * local.x + focal[1] * local.y, focal[3] * local.y) / local.z + vec2(focal[2], focal[4]);
+    vec2 place = ((pixel + 0.5 - window.xy) / window.zw * 2.0 - 1.0) * local.z;
+    float n = near_far.x, f = near_far.y;
+    return vec4(place, ((f + n) * local.z - 2.0 * f * n) / (f - n), local.z);
+}
+"""
+
+MOVING: Final = """
+layout(location = 0) in vec3 power_0;
+layout(location = 1) in vec3 power_1;
+layout(location = 2) in vec3 power_2;
+layout(location = 3) in vec3 power_3;
+uniform float start;   // s of the middle row
+uniform float readout; // s from the first row to the last
+
+vec3 place_at_its_row(out vec3 local) {
+    float s = start;
+    vec3 place;
+    for (int turn = 0; turn < 6; ++turn) {
+        place = ((power_3 * s + power_2) * s + power_1) * s + power_0;
+        local = rotation * place + translation;
+        if (local.z < near_far.x || readout == 0.0) break;
+        float row = clamp(to_pixel(local).y, -0.1 * size.y, 1.1 * size.y);
+        s = start + readout * (row / (size.y - 1.0) - 0.5);
+    }
+    return place;
+}
+"""
+
+MOVING_VERTEX: Final = (
+    VERSION
+    + LENS
+    + MOVING
+    + """
+layout(location = 4) in vec3 normal;
+layout(location = 5) in vec3 colour;
+layout(location = 6) in vec2 uv;
+out vec3 at, facing, tint;
+out vec2 spot;
+
+void main() {
+    vec3 local;
+    at = place_at_its_row(local);
+    facing = normal;
+    tint = colour;
+    spot = uv;
+    gl_Position = to_clip(local);
+}
+"""
+)
+
+ROOM_VERTEX: Final = (
+    VERSION
+    + LENS
+    + """
+layout(location = 0) in vec3 place;
+layout(location = 4) in vec3 normal;
+layout(location = 5) in vec3 colour;
+layout(location = 6) in vec2 uv;
+out vec3 at, facing, tint;
+out vec2 spot;
+
+void main() {
+    at = place;
+    facing = normal;
+    tint = colour;
+    spot = uv;
+    gl_Position = to_clip(rotation * place + translation);
+}
+"""
+)
+
+LIGHT: Final = """
+in vec3 at, facing, tint;
+in vec2 spot;
+uniform vec3 lamp_directions[8];
+uniform vec3 lamp_colours[8];
+uniform int lamps;
+uniform vec3 ambient;
+uniform vec3 eye;
+uniform float gloss;
+uniform bool textured;
+uniform sampler2D picture;
+
+vec3 lit() {
+    vec3 view = normalize(eye - at);
+    vec3 n = normalize(facing);
+    if (dot(n, view) < 0.0) n = -n;
+    vec3 own = textured ? tint * texture(picture, spot).rgb : tint;
+    // Floors send up less than ceilings and walls send down.
+    vec3 light = ambient * (0.8 + 0.2 * n.z);
+    vec3 shine = vec3(0.0);
+    float sharp = exp2(2.0 + 7.0 * gloss);
+    for (int lamp = 0; lamp < lamps; ++lamp) {
+        float falls = dot(n, lamp_directions[lamp]);
+        if (falls <= 0.0) continue;
+        light += lamp_colours[lamp] * falls;
+        if (gloss > 0.0)
+            shine += lamp_colours[lamp] * gloss * (sharp + 8.0) / 40.0
+                * pow(max(dot(n, normalize(view + lamp_directions[lamp])), 0.0), sharp) * 0.25;
+    }
+    return own * light + shine;
+}
+"""
+
+ROOM_FRAGMENT: Final = (
+    VERSION
+    + LIGHT
+    + """
+out vec4 seen;
+void main() { seen = vec4(lit(), 1.0); }
+"""
+)
+
+MOVING_FRAGMENT: Final = (
+    VERSION
+    + LIGHT
+    + """
+uniform sampler2D room_depths; // in each of the four samples of a pixel
+layout(location = 0) out vec4 seen;
+void main() {
+    bvec4 before = lessThan(vec4(1.0 / gl_FragCoord.w), texelFetch(room_depths, ivec2(gl_FragCoord.xy), 0));
+    if (!any(before)) discard;
+    gl_SampleMask[0] = int(before.x) | int(before.y) << 1 | int(before.z) << 2 | int(before.w) << 3;
+    seen = vec4(lit(), 1.0);
+}
+"""
+)
+
+NOTHING_FRAGMENT: Final = VERSION + "void main() {}\n"
+
+WHOLE_VERTEX: Final = (
+    VERSION
+    + """
+void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }
+"""
+)
+
+DEPTHS_FRAGMENT: Final = (
+    VERSION
+    + """
+uniform sampler2DMS depths;
+uniform vec2 near_far;
+out vec4 metres;
+void main() {
+    for (int i = 0; i < 4; ++i) {
+        float z = texelFetch(depths, ivec2(gl_FragCoord.xy), i).r * 2.0 - 1.0;
+        metres[i] = 2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - z * (near_far.y - near_far.x));
+    }
+}
+"""
+)
+
+GATHER_FRAGMENT: Final = (
+    VERSION
+    + """
+uniform sampler2DMS samples;
+uniform float weight;
+out vec4 gathered;
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    gathered = weight * (texelFetch(samples, pixel, 0) + texelFetch(samples, pixel, 1)
+        + texelFetch(samples, pixel, 2) + texelFetch(samples, pixel, 3));
+}
+"""
+)
