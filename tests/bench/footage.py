@@ -22,11 +22,11 @@ from models.messages.motion import JointState
 from models.skeleton import coco
 from services.calibration.shift import solve_shifts
 from tests.bench.boxes import inside
+from tests.bench.closed_loop import Event
 from tests.bench.footage_run import (
     CONFIG,
     FLUSH_FRAMES,
     RATE_HZ,
-    Event,
     Reconstruction,
     frame_by_frame,
     load_videos,

@@ -1,7 +1,6 @@
 """The built-in footage through the box's own steps, without clock and sockets, so that a run repeats to the last bit.
 
-The edge's `observe` and fusion's `step` are the functions that the processes call; the loop between them (predicted crops, search,
-turns) is closed as the processes close it.
+See `tests.bench.closed_loop` for what is run.
 """
 
 import time
@@ -11,30 +10,28 @@ from pathlib import Path
 
 import numpy as np
 
-from edge.cameras.video import Video, load_video
+from edge.cameras.video import Schedule, Video, load_video
 from edge.footage.sets import ONE_PERSON, Footage
-from edge.observe import EdgeConfig, EdgeState, Networks, Stages, observe
+from edge.observe import Networks
 from edge.perception.detection import load_person_detector
 from edge.perception.networks import Provider
 from edge.perception.pose import load_pose_network
-from edge.turns import is_due
 from models.arrays import Float, UInt8, UInt32
 from models.camera.rig import Rig
-from models.messages.control import CropPrediction, PoseNetwork, ViewControl
+from models.messages.control import PoseNetwork
 from models.messages.motion import JointState, Motion
 from models.messages.observation import Observation, Person
 from models.skeleton import coco
 from services.fusion.config import PRESETS, FusionConfig
-from services.fusion.governor import turn_offset_ns
-from services.fusion.pipeline import FusionOutput, Tick, initial_state, predict_views, step
+from services.fusion.pipeline import FusionOutput, Tick, initial_state, step
 from services.fusion.triangulation import triangulate
 from services.fusion.views import Views, sightings
+from tests.bench.closed_loop import Event, Pace, watch
 
 START_NS = 1_000_000_000
 RATE_HZ = 30.0
 FLUSH_FRAMES = 10
 CONFIG = PRESETS["default"]
-Event = Observation | Tick
 
 
 @dataclass(frozen=True)
@@ -72,40 +69,12 @@ def look(
     pose = load_pose_network(network, data, provider)
     detector = load_person_detector(data, provider)
     networks = Networks(pose, lambda: detector)
-    states = [EdgeState() for _ in videos]
-    inferred: list[int | None] = [None] * len(videos)
-    fusion = initial_state(rig)
-    searching: dict[str, bool] = {}
-    predictions: dict[str, CropPrediction | None] = dict.fromkeys(rig.names)
-    events: list[Event] = []
-    for frames in zip(*(video.frames(RATE_HZ) for video in videos), strict=True):
-        t_ns = START_NS + frames[0].t_mid_ns
-        for index, (video, picture) in enumerate(zip(videos, frames, strict=True)):
-            frame = video.frame(0, picture.index, t_ns)
-            control = ViewControl(
-                camera=frame.camera,
-                sequence=frame.index,
-                t_ns=t_ns,
-                rate_hz=rate_hz,
-                offset_ns=START_NS + turn_offset_ns(index, len(videos), rate_hz),
-                network=network,
-                search=searching.get(frame.camera, True),
-                prediction=predictions[frame.camera],
-            )
-            if not is_due(t_ns, inferred[index], control):
-                continue
-            inferred[index] = t_ns
-            stages = Stages(time.thread_time_ns)
-            states[index], observation = observe(states[index], frame, networks, control, EdgeConfig(), stages)
-            events.append(observation)
-            fusion, _ = step(fusion, observation, CONFIG)
-        events.append(Tick(t_ns))
-        fusion, output = step(fusion, Tick(t_ns), CONFIG)
-        searching = output.searching or searching
-        predictions = predict_views(fusion, t_ns)
-    last_ns = t_ns
-    events += [Tick(last_ns + round(k * 1e9 / RATE_HZ)) for k in range(1, FLUSH_FRAMES + 1)]
-    return events
+    number = len(videos[0].pictures)
+    schedule = Schedule(START_NS, 0, RATE_HZ)
+    times_ns = [schedule.t_ns(index) for index in range(number)]
+    pictures = (video.frame(0, index, times_ns[index]) for index in range(number) for video in videos)
+    events = watch(rig, pictures, times_ns, networks, Pace(rate_hz, network, START_NS), CONFIG)
+    return events + [Tick(times_ns[-1] + round(k * 1e9 / RATE_HZ)) for k in range(1, FLUSH_FRAMES + 1)]
 
 
 def reconstruct(rig: Rig, events: Sequence[Event], frames: int, config: FusionConfig = CONFIG) -> Reconstruction:

@@ -8,8 +8,9 @@ import pytest
 from edge.footage.sets import TWO_PEOPLE
 from models.camera.rig import decode_rig
 from tests.bench import footage2
+from tests.bench.closed_loop import Event
 from tests.bench.footage import frames_without_pose
-from tests.bench.footage_run import Event, load_videos, look, pupil_keypoints, reconstruct
+from tests.bench.footage_run import load_videos, look, pupil_keypoints, reconstruct
 from tests.installed import ROOT, require_footage, require_networks
 
 pytestmark = [pytest.mark.footage, pytest.mark.networks, pytest.mark.slow, pytest.mark.timeout(240)]
