@@ -7,6 +7,7 @@ import numpy as np
 
 from models.arrays import Bool, Float
 from models.body.pose import Pose
+from models.motions import rotations
 from models.skeleton import smpl
 
 RATE_HZ: Final = 240.0
@@ -99,6 +100,35 @@ class Motion:
         """(T,) of the poses."""
         return np.arange(len(self.translations_m)) / RATE_HZ
 
+    def pose_at(self, t_s: float) -> Pose:
+        """The pose at any time from 0 to `duration_s`: cubic places, shortest turns between samples.
+
+        Raises:
+            ValueError: the time is outside.
+        """
+        if not 0 <= t_s <= self.duration_s:
+            raise ValueError(f"the motion has poses from 0 to {self.duration_s:g} s, none at {t_s:g} s")
+        first = min(int(t_s * RATE_HZ), len(self.translations_m) - 2)
+        share = t_s * RATE_HZ - first
+        start, end = rotations.matrices(self.rotations_rad[first]), rotations.matrices(self.rotations_rad[first + 1])
+        turned = rotations.vectors(rotations.between(start, end, np.full(smpl.COUNT, share)))
+        return Pose(_cubic(self.translations_m, first, share), turned)
+
     def pose(self, number: int) -> Pose:
         """Pose `number`, as it is stored."""
         return Pose(self.translations_m[number], self.rotations_rad[number])
+
+
+def _cubic(places_m: Float, first: int, share: float) -> Float:
+    """Catmull and Rom's curve between sample `first` and the next; straight on beyond the ends."""
+    before = places_m[first - 1] if first > 0 else 2 * places_m[0] - places_m[1]
+    after = places_m[first + 2] if first + 2 < len(places_m) else 2 * places_m[-1] - places_m[-2]
+    start, end = places_m[first], places_m[first + 1]
+    leaving, arriving = (end - before) / 2, (after - start) / 2
+    square, cube = share**2, share**3
+    return np.asarray(
+        (2 * cube - 3 * square + 1) * start
+        + (cube - 2 * square + share) * leaving
+        + (3 * square - 2 * cube) * end
+        + (cube - square) * arriving
+    )

@@ -1,0 +1,280 @@
+"""Key poses in a coach's words, laid on a line of time, become a motion.
+
+Each word has knots of its own: a key pose names those that it changes. Between knots a word goes monotonically, without
+overshoot, its corners rounded. Feet are held by the floor from a landing to the next lift. The pelvis' keys fix where the
+centre of mass is at their times; between them it goes smoothly, and in the air by gravity alone; the pelvis follows from it. So
+the body gives way to the swing of its limbs, and leaves the floor with the very velocity that its flight takes.
+
+Times are seconds from the motion's beginning, lengths are leg lengths (hip to ankle), so that a child's motion is a child's size.
+"""
+
+from dataclasses import dataclass, fields
+from typing import Final, Literal
+
+import numpy as np
+
+from models.arrays import Bool, Float
+from models.motions import posing, rotations, splines
+from models.motions.ballistics import GRAVITY_M_S2
+from models.motions.figure import Figure
+from models.motions.grounding import balanced
+from models.motions.motion import CONTACTS, RATE_HZ, Attempt, Motion, Thing
+from models.motions.standing import standing_values
+from models.motions.subject import Subject
+from models.motions.vocabulary import Arm, Body, Leg
+
+Side = Literal["left", "right"]
+
+SOFT_S: Final = 0.017
+"""Deviation of the Gaussian that rounds the corners of words."""
+_YIELD_S: Final = 0.09
+"""How long a foot takes from being held to being free, and back."""
+
+
+@dataclass(frozen=True)
+class _Step:
+    side: Side
+    lift_s: float
+    land_s: float
+    place: tuple[float, float]
+    yaw_deg: float
+    height: float
+    free: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Sampled poses, before they are wrapped up as a motion. Fields as in `Motion`; `local` are rotations against the parents."""
+
+    times_s: Float
+    pelvis_m: Float
+    local: Float
+
+
+class Timeline:
+    """Collects key poses; begins in `stand` at time 0."""
+
+    def __init__(self, subject: Subject) -> None:
+        self.figure = Figure(subject)
+        self._home = standing_values(self.figure)
+        self._knots: dict[str, dict[float, Float]] = {name: {0.0: value} for name, value in self._home.items()}
+        self._steps: list[_Step] = []
+        self._flights: list[tuple[float, float]] = []
+        self._guides: list[tuple[Side, Float, Float, dict[float, Float]]] = []
+
+    @property
+    def leg_m(self) -> float:
+        """The unit of lengths."""
+        return self.figure.leg_m
+
+    def key(
+        self,
+        at_s: float,
+        body: Body | None = None,
+        left_arm: Arm | None = None,
+        right_arm: Arm | None = None,
+        left_leg: Leg | None = None,
+        right_leg: Leg | None = None,
+    ) -> None:
+        """A key pose: what its words say, at this time. A later call for the same time and word takes its place."""
+        for prefix, words in (
+            ("left_arm.", left_arm),
+            ("right_arm.", right_arm),
+            ("left_leg.", left_leg),
+            ("right_leg.", right_leg),
+        ):
+            if words is not None:
+                for field in fields(words):
+                    self._set(at_s, prefix + field.name, getattr(words, field.name))
+        if body is not None:
+            for name in ("facing", "tip", "side", "lean", "bow", "twist", "gaze"):
+                self._set(at_s, name, getattr(body, name))
+            self._set_pelvis(at_s, body.at, body.height)
+
+    def arms(self, at_s: float, both: Arm) -> None:
+        """Both arms alike."""
+        self.key(at_s, left_arm=both, right_arm=both)
+
+    def step(
+        self,
+        side: Side,
+        lift_s: float,
+        land_s: float,
+        place: tuple[float, float],
+        yaw: float = 0.0,
+        height: float = 0.12,
+        pitch: float = 0.0,
+        flat_s: float = 0.12,
+    ) -> None:
+        """A foot goes from where it stands to a new footprint.
+
+        Args:
+            side: of the foot.
+            lift_s: its last contact; the heel rises before by itself, as far as the leg needs it.
+            land_s: its next contact.
+            place: (front, left) against where this foot stood when the action began.
+            yaw: of the toes, degrees, outwards.
+            height: of the sole in the middle of the step.
+            pitch: with which it lands, degrees: below 0 on the heel, above 0 on the toes.
+            flat_s: from the landing until it stands flat.
+        """
+        self._move(_Step(side, lift_s, land_s, place, yaw, height, free=False))
+        if pitch or flat_s:
+            self._set(land_s, f"{side}_foot.pitch", pitch)
+            self._set(land_s + flat_s, f"{side}_foot.pitch", 0.0)
+        self._set((lift_s + land_s) / 2, f"{side}_foot.pitch", 25.0)
+
+    def swing(
+        self,
+        side: Side,
+        lift_s: float,
+        land_s: float,
+        place: tuple[float, float],
+        yaw: float = 0.0,
+        pitch: float = 0.0,
+        flat_s: float = 0.1,
+    ) -> None:
+        """A foot leaves the floor, goes by the words of its leg (`Leg`), and lands. Arguments as `step`."""
+        self._move(_Step(side, lift_s, land_s, place, yaw, height=0.1, free=True))
+        ease = min(_YIELD_S, 0.4 * (land_s - lift_s))
+        for at_s, hold in ((lift_s, 1.0), (lift_s + ease, 0.0), (land_s - ease, 0.0), (land_s, 1.0)):
+            self._set(at_s, f"{side}_foot.hold", hold)
+        self._set(lift_s, f"{side}_foot.pitch", 0.0)
+        self._set(land_s, f"{side}_foot.pitch", pitch)
+        self._set(land_s + flat_s, f"{side}_foot.pitch", 0.0)
+
+    def pitch(self, at_s: float, side: Side, degrees: float) -> None:
+        """A held foot raises its heel (above 0) or its toes (below 0) at least this far."""
+        self._set(at_s, f"{side}_foot.pitch", degrees)
+
+    def flight(self, off_s: float, on_s: float) -> None:
+        """Nothing touches the floor in between; both times need a key of the pelvis."""
+        self._flights.append((off_s, on_s))
+
+    def guide(self, side: Side, offset_m: Float, pole: tuple[float, float, float], weights: dict[float, float]) -> None:
+        """A hand stays with a point fixed to the other hand (see `posing.Guide`); `weights` at times."""
+        knots = {at_s: np.array(weight) for at_s, weight in weights.items()}
+        self._guides.append((side, offset_m, np.array(pole) * posing.OUT[side], knots))
+
+    def stand(self, at_s: float, at: tuple[float, float] = (0.0, 0.0)) -> None:
+        """Back in `stand`, there; feet that are elsewhere must have stepped."""
+        for name, value in self._home.items():
+            if "_foot." not in name and name != "pelvis":
+                self._knots[name][at_s] = value
+        self._set_pelvis(at_s, at, 1.0)
+
+    def _set(self, at_s: float, name: str, value: float | tuple[float, ...] | None) -> None:
+        if value is not None:
+            self._knots[name][at_s] = np.asarray(value, np.float64)
+
+    def _set_pelvis(self, at_s: float, at: tuple[float, float] | None, height: float | None) -> None:
+        if at is None and height is None:
+            return
+        times, values = self._ordered("pelvis")
+        now = splines.monotone(times, values, np.array([at_s]))[0]
+        place = now[:2] if at is None else self.leg_m * np.array(at)
+        up = now[2] if height is None else self._home["pelvis"][2] * height
+        self._knots["pelvis"][at_s] = np.array((*place, up))
+
+    def _move(self, step: _Step) -> None:
+        if any(other.side == step.side and other.land_s > step.lift_s for other in self._steps):
+            raise ValueError(f"the {step.side} foot lifts at {step.lift_s:.3f} s, but has not landed from its last step")
+        if step.land_s <= step.lift_s:
+            raise ValueError(f"the {step.side} foot would land at {step.land_s:.3f} s before it lifts at {step.lift_s:.3f} s")
+        self._steps.append(step)
+
+    def _ordered(self, name: str) -> tuple[Float, Float]:
+        knots = self._knots[name]
+        times = np.array(sorted(knots))
+        return times, np.stack([knots[at_s] for at_s in times])
+
+    def _sampled(self, at_s: Float, even: bool) -> dict[str, Float]:
+        """All words at these times; `even` says that they are `RATE_HZ` apart, so that corners can be rounded."""
+        values = {name: splines.monotone(*self._ordered(name), at_s) for name in self._knots if name != "pelvis"}
+        if even:
+            for name, value in values.items():
+                if not name.endswith(("_foot.hold", "_foot.place", "_foot.yaw")):
+                    values[name] = splines.softened(value, SOFT_S * RATE_HZ)
+        for side in posing.SIDES:
+            values[f"{side}_foot.place"], values[f"{side}_foot.yaw"] = self._footprints(side, at_s)
+        return values
+
+    def _footprints(self, side: str, at_s: Float) -> tuple[Float, Float]:
+        """(T, 3) footprints, the sole's height as z, and (T,) yaw in degrees."""
+        home, out = self._home[f"{side}_foot.place"], 1.0 if side == "left" else -1.0
+        place, yaw = np.tile(home, (len(at_s), 1)), np.full(len(at_s), float(self._home[f"{side}_foot.yaw"]))
+        for step in self._steps:
+            if step.side != side:
+                continue
+            share = (at_s - step.lift_s) / (step.land_s - step.lift_s)
+            gone = splines.minimum_jerk(share)
+            target = home + self.leg_m * np.array((*step.place, 0.0))
+            place[:, :2] += gone[:, None] * (target - place)[:, :2]
+            place[:, 2] += self.leg_m * step.height * np.sin(np.pi * np.clip(share, 0, 1)) ** 2
+            yaw += gone * (out * step.yaw_deg - yaw)
+        return place, yaw
+
+    def _posed(self, values: dict[str, Float], at_s: Float) -> Float:
+        guides = []
+        for side, offset, pole, knots in self._guides:
+            times = np.array(sorted(knots))
+            weight = splines.monotone(times, np.stack([knots[time] for time in times]), at_s)
+            guides.append(posing.Guide(side, offset, weight, pole))
+        return posing.upper_body(self.figure, values, tuple(guides))
+
+    def _centre_of_mass(self, at_s: Float) -> Float:
+        """(T, 3) smooth through where the pelvis' keys put it, ballistic in flights."""
+        times, pelvis = self._ordered("pelvis")
+        values = self._sampled(times, even=False)
+        local = self._posed(values, times)
+        posing.legs(self.figure, values, pelvis, local)
+        places = self.figure.centres_of_mass_m(self.figure.place_local(pelvis, local))
+        slopes = splines.monotone_slopes(times, places)
+        for off_s, on_s in self._flights:
+            off, on = self._number(times, off_s), self._number(times, on_s)
+            if on != off + 1:
+                raise ValueError(f"the pelvis has a key within the flight from {off_s:.3f} to {on_s:.3f} s, where gravity rules")
+            mean = (places[on] - places[off]) / (on_s - off_s)
+            change = np.array((0.0, 0.0, GRAVITY_M_S2 * (on_s - off_s) / 2))
+            slopes[off], slopes[on] = mean + change, mean - change
+        return splines.hermite(times, places, slopes, at_s)
+
+    @staticmethod
+    def _number(times: Float, at_s: float) -> int:
+        found = np.flatnonzero(times == at_s)
+        if len(found) != 1:
+            raise ValueError(f"a flight begins or ends at {at_s:.3f} s, where the pelvis has no key")
+        return int(found[0])
+
+    def poses(self, end_s: float) -> Poses:
+        """Sample from 0 to `end_s`, rounded up to a whole sample."""
+        times = np.arange(int(np.ceil(end_s * RATE_HZ - 1e-6)) + 1) / RATE_HZ
+        values = self._sampled(times, even=True)
+        local = self._posed(values, times)
+        pelvis = balanced(
+            self.figure,
+            self._centre_of_mass(times),
+            local,
+            lambda places, turned: posing.legs(self.figure, values, places, turned),
+        )
+        return Poses(times, pelvis, local)
+
+    def contacts(self, times_s: Float) -> Bool:
+        """(T, 5) feet that are not in a step; nothing else bears."""
+        contacts = np.zeros((len(times_s), len(CONTACTS)), bool)
+        for number, side in enumerate(posing.SIDES):
+            contacts[:, number] = True
+            for step in self._steps:
+                if step.side == side:
+                    contacts[(times_s > step.lift_s) & (times_s < step.land_s), number] = False
+        return contacts
+
+    def motion(self, end_s: float, attempts: tuple[Attempt, ...] = (), things: tuple[Thing, ...] = ()) -> Motion:
+        """Everything, sampled."""
+        poses = self.poses(end_s)
+        return self.wrapped(poses, attempts, things)
+
+    def wrapped(self, poses: Poses, attempts: tuple[Attempt, ...] = (), things: tuple[Thing, ...] = ()) -> Motion:
+        """Sampled poses as a motion."""
+        turned = rotations.vectors(poses.local)
+        return Motion(poses.pelvis_m, turned, self.contacts(poses.times_s), attempts, things)
