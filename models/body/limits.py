@@ -3,6 +3,7 @@
 Axes are those of the T-pose (x to the front, y to the left, z up), so that on the left side:
 - arm: turning about x lowers (-) and raises (+) it, about z brings it forwards (-), about y twists it;
 - elbow: about z, bending is negative; leg: hip about y, flexion (thigh forwards) is negative; knee about y, bending is positive;
+- elbow about x: nothing alone, but a bent elbow whose forearm is turned (palm of a shooting hand under the ball) turns about x, too;
 - ankle about y: dorsiflexion (toes up) is negative; wrist: about x ulnar/radial deviation turns into z, flexion about x.
 The right side is its mirror image.
 
@@ -31,7 +32,7 @@ _LEFT_DEGREES: Final = {
     "head": ((-25, 25), (-35, 35), (-45, 45)),
     "left_collar": ((-15, 40), (-20, 20), (-30, 30)),
     "left_shoulder": ((-105, 100), (-100, 100), (-140, 60)),
-    "left_elbow": ((-10, 10), (-100, 100), (-155, 10)),
+    "left_elbow": ((-95, 95), (-100, 100), (-155, 10)),
     "left_wrist": ((-85, 85), (-20, 20), (-35, 35)),
     "left_hand": ((-100, 30), (-10, 10), (-20, 20)),
     "left_hip": ((-45, 60), (-140, 35), (-50, 50)),

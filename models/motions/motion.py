@@ -53,7 +53,7 @@ class Thing:
     """Something that moves with the pupil or from him: a ball, a racket.
 
     Attributes:
-        kind: what it is; its own frame is that of `edge.simulation.things`.
+        kind: what it is; sizes and frames stand in `models.motions.things`.
         translations_m: (T, 3) of its origin in the world, at the motion's poses; NaN while it is not there.
         rotations_rad: (T, 3) rotation vectors from its frame into the world.
     """
