@@ -144,10 +144,10 @@ def legs(figure: Figure, values: Values, pelvis_m: Float, local: Float) -> dict[
     for side in SIDES:
         limb = limb_of(figure, side, "leg")
         hip = pelvis_m + rotations.through(pelvis, figure.bones_m[limb.root])
-        place, yaw, pitch, hold = (values[f"{side}_foot.{name}"] for name in ("place", "yaw", "pitch", "hold"))
+        place, yaw, pitch, hold, knee = (values[f"{side}_foot.{name}"] for name in ("place", "yaw", "pitch", "hold", "knee"))
         held[side] = footing(figure, side, hip, place, np.radians(yaw), np.radians(pitch))
         joints = [limb.root, limb.hinge, *(smpl.INDEX[f"{side}_{name}"] for name in ("ankle", "foot"))]
-        target = _planted_leg(limb, held[side], hip, pelvis, np.radians(yaw))
+        target = _planted_leg(limb, held[side], hip, pelvis, np.radians(yaw), np.radians(yaw + OUT[side][1] * knee))
         share = np.broadcast_to(1.0 - hold[:, None], (len(hold), len(joints)))
         local[:, joints] = np.where(
             hold[:, None, None, None] >= 1.0, target, rotations.between(target, _free_leg(limb, side, values), share)
@@ -155,10 +155,10 @@ def legs(figure: Figure, values: Values, pelvis_m: Float, local: Float) -> dict[
     return held
 
 
-def _planted_leg(limb: Limb, foot: Footing, hip: Float, pelvis: Float, yaw_rad: Float) -> Float:
-    """(T, 4, 3, 3) hip, knee, ankle and toes of a leg whose foot is held; the knee points where the foot does."""
+def _planted_leg(limb: Limb, foot: Footing, hip: Float, pelvis: Float, yaw_rad: Float, knee_rad: Float) -> Float:
+    """(T, 4, 3, 3) hip, knee, ankle and toes of a leg whose foot is held; the knee points to its own yaw."""
     heading = rotations.about(2, yaw_rad)
-    thigh, bend = reach(limb, foot.ankles_m - hip, heading[..., 1])
+    thigh, bend = reach(limb, foot.ankles_m - hip, rotations.about(2, knee_rad)[..., 1])
     knee = _bent(limb, bend)
     sole = heading @ rotations.about(1, foot.pitch_rad)
     ankle = (thigh @ knee).swapaxes(-1, -2) @ sole

@@ -54,7 +54,7 @@ def standing_values(figure: Figure) -> dict[str, Float]:
         values |= {f"{side}_arm.{name}": np.array(value) for name, value in _ARM.items()}
         values |= {f"{side}_leg.{name}": np.array(value) for name, value in _LEG.items()}
         out = 1.0 if side == "left" else -1.0
-        values |= {f"{side}_foot.{name}": np.array(value) for name, value in (("pitch", 0.0), ("hold", 1.0))}
+        values |= {f"{side}_foot.{name}": np.array(value) for name, value in (("pitch", 0.0), ("hold", 1.0), ("knee", 0.0))}
         values[f"{side}_foot.yaw"] = np.array(out * TOES_OUT_DEG)
     forward, height = 0.0, figure.leg_m
     for _ in range(_ROUNDS):

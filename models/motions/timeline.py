@@ -147,6 +147,10 @@ class Timeline:
         """A held foot raises its heel (above 0) or its toes (below 0) at least this far."""
         self._set(at_s, f"{side}_foot.pitch", degrees)
 
+    def knee(self, at_s: float, side: Side, degrees: float) -> None:
+        """The knee over a held foot points so far beside the toes: outwards, or inwards (below 0)."""
+        self._set(at_s, f"{side}_foot.knee", degrees)
+
     def flight(self, off_s: float, on_s: float) -> None:
         """Nothing touches the floor in between; both times need a key of the pelvis."""
         self._flights.append((off_s, on_s))

@@ -1,6 +1,6 @@
 """Natural variation: what differs from one try to the next and from one pupil to another, and is no fault.
 
-Each number is drawn for a name of its own, so that two performances of one seed that differ in a fault or in their tempo vary alike.
+Each number is drawn for a name of its own, so that two performances of one seed that differ in a fault or a tempo vary alike.
 """
 
 import zlib
