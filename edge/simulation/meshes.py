@@ -70,3 +70,12 @@ def appearance(surface: Surface) -> Float32:
 def texels(texture: Texture) -> UInt8:
     """(H, W, 4) sRGB for the graphics library."""
     return np.ascontiguousarray(cv2.cvtColor(np.ascontiguousarray(texture.picture), cv2.COLOR_RGB2RGBA))
+
+
+def is_closed(faces: Counts) -> bool:
+    """Whether each edge of the triangles (F, 3) has one triangle on either side."""
+    ends = np.concatenate((faces[:, :2], faces[:, 1:], faces[:, ::2][:, ::-1])).astype(np.int64)
+    ends = ends[ends[:, 0] != ends[:, 1]]
+    ways = ends[:, 0] << 32 | ends[:, 1]
+    back = ends[:, 1] << 32 | ends[:, 0]
+    return len(np.unique(ways)) == len(ways) and bool(np.isin(back, ways).all())

@@ -62,24 +62,72 @@ vec3 place_at_its_row(out vec3 local) {
 }
 """
 
+LAMPS: Final = """
+uniform vec3 lamp_directions[8];
+uniform vec3 lamp_colours[8];
+uniform int lamps;
+uniform vec3 ambient;
+uniform vec3 eye;
+uniform float gloss;
+
+void lighten(vec3 n, vec3 view, out vec3 light, out vec3 shine) {
+    // Floors send up less than ceilings and walls send down.
+    light = ambient * (0.8 + 0.2 * n.z);
+    shine = vec3(0.0);
+    float sharp = exp2(2.0 + 7.0 * gloss);
+    for (int lamp = 0; lamp < lamps; ++lamp) {
+        float falls = dot(n, lamp_directions[lamp]);
+        if (falls <= 0.0) continue;
+        light += lamp_colours[lamp] * falls;
+        if (gloss > 0.0)
+            shine += lamp_colours[lamp] * gloss * (sharp + 8.0) / 160.0
+                * pow(max(dot(n, normalize(view + lamp_directions[lamp])), 0.0), sharp);
+    }
+}
+"""
+
+# The triangles of what moves are hardly larger than pixels: light in their corners is light enough.
 MOVING_VERTEX: Final = (
     VERSION
     + LENS
     + MOVING
+    + LAMPS
     + """
 layout(location = 4) in vec3 normal;
 layout(location = 5) in vec3 colour;
 layout(location = 6) in vec2 uv;
-out vec3 at, facing, tint;
+out vec3 outer, outer_shine, inner, inner_shine;
 out vec2 spot;
 
 void main() {
     vec3 local;
-    at = place_at_its_row(local);
-    facing = normal;
-    tint = colour;
+    vec3 view = normalize(eye - place_at_its_row(local));
+    lighten(normal, view, outer, outer_shine);
+    lighten(-normal, view, inner, inner_shine);
+    outer *= colour;
+    inner *= colour;
     spot = uv;
     gl_Position = to_clip(local);
+}
+"""
+)
+
+MOVING_FRAGMENT: Final = (
+    VERSION
+    + """
+in vec3 outer, outer_shine, inner, inner_shine;
+in vec2 spot;
+uniform bool textured;
+uniform sampler2D picture;
+uniform sampler2D room_depths; // in each of the four samples of a pixel
+layout(location = 0) out vec4 seen;
+
+void main() {
+    bvec4 before = lessThan(vec4(1.0 / gl_FragCoord.w), texelFetch(room_depths, ivec2(gl_FragCoord.xy), 0));
+    if (!any(before)) discard;
+    gl_SampleMask[0] = int(before.x) | int(before.y) << 1 | int(before.z) << 2 | int(before.w) << 3;
+    vec3 own = textured ? texture(picture, spot).rgb : vec3(1.0);
+    seen = vec4(gl_FrontFacing ? own * outer + outer_shine : own * inner + inner_shine, 1.0);
 }
 """
 )
@@ -105,64 +153,83 @@ void main() {
 """
 )
 
-LIGHT: Final = """
-in vec3 at, facing, tint;
-in vec2 spot;
-uniform vec3 lamp_directions[8];
-uniform vec3 lamp_colours[8];
-uniform int lamps;
-uniform vec3 ambient;
-uniform vec3 eye;
-uniform float gloss;
-uniform bool textured;
-uniform sampler2D picture;
-
-vec3 lit() {
-    vec3 view = normalize(eye - at);
-    vec3 n = normalize(facing);
-    if (dot(n, view) < 0.0) n = -n;
-    vec3 own = textured ? tint * texture(picture, spot).rgb : tint;
-    // Floors send up less than ceilings and walls send down.
-    vec3 light = ambient * (0.8 + 0.2 * n.z);
-    vec3 shine = vec3(0.0);
-    float sharp = exp2(2.0 + 7.0 * gloss);
-    for (int lamp = 0; lamp < lamps; ++lamp) {
-        float falls = dot(n, lamp_directions[lamp]);
-        if (falls <= 0.0) continue;
-        light += lamp_colours[lamp] * falls;
-        if (gloss > 0.0)
-            shine += lamp_colours[lamp] * gloss * (sharp + 8.0) / 40.0
-                * pow(max(dot(n, normalize(view + lamp_directions[lamp])), 0.0), sharp) * 0.25;
-    }
-    return own * light + shine;
-}
-"""
-
 ROOM_FRAGMENT: Final = (
     VERSION
-    + LIGHT
+    + LAMPS
     + """
+in vec3 at, facing, tint;
+in vec2 spot;
+uniform bool textured;
+uniform sampler2D picture;
 out vec4 seen;
-void main() { seen = vec4(lit(), 1.0); }
-"""
-)
 
-MOVING_FRAGMENT: Final = (
-    VERSION
-    + LIGHT
-    + """
-uniform sampler2D room_depths; // in each of the four samples of a pixel
-layout(location = 0) out vec4 seen;
 void main() {
-    bvec4 before = lessThan(vec4(1.0 / gl_FragCoord.w), texelFetch(room_depths, ivec2(gl_FragCoord.xy), 0));
-    if (!any(before)) discard;
-    gl_SampleMask[0] = int(before.x) | int(before.y) << 1 | int(before.z) << 2 | int(before.w) << 3;
-    seen = vec4(lit(), 1.0);
+    vec3 view = normalize(eye - at);
+    vec3 n = normalize(facing);
+    vec3 light, shine;
+    lighten(dot(n, view) < 0.0 ? -n : n, view, light, shine);
+    seen = vec4((textured ? tint * texture(picture, spot).rgb : tint) * light + shine, 1.0);
 }
 """
 )
 
-NOTHING_FRAGMENT: Final = VERSION + "void main() {}\n"
+TRUTH_FRAGMENT: Final = (
+    VERSION
+    + """
+in vec3 at;
+in vec2 shares;
+flat in float face;
+uniform float shown;
+layout(location = 0) out vec4 surface;
+layout(location = 1) out vec4 where;
+
+void main() {
+    surface = vec4(shown, face, shares);
+    where = vec4(at, 1.0 / gl_FragCoord.w);
+}
+"""
+)
+
+ROOM_TRUTH_VERTEX: Final = (
+    VERSION
+    + LENS
+    + """
+layout(location = 0) in vec3 place;
+layout(location = 1) in vec2 weights;
+layout(location = 2) in float number;
+out vec3 at;
+out vec2 shares;
+flat out float face;
+
+void main() {
+    at = place;
+    shares = weights;
+    face = number;
+    gl_Position = to_clip(rotation * place + translation);
+}
+"""
+)
+
+# Each face has three corners of its own here.
+MOVING_TRUTH_VERTEX: Final = (
+    VERSION
+    + LENS
+    + MOVING
+    + """
+out vec3 at;
+out vec2 shares;
+flat out float face;
+
+void main() {
+    vec3 local;
+    at = place_at_its_row(local);
+    int corner = gl_VertexID % 3;
+    shares = vec2(corner == 1, corner == 2);
+    face = float(gl_VertexID / 3);
+    gl_Position = to_clip(local);
+}
+"""
+)
 
 WHOLE_VERTEX: Final = (
     VERSION

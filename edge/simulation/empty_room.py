@@ -1,0 +1,105 @@
+"""The room through one camera: its light in each pixel, and its depths. Drawn once, finely."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from edge.simulation import shaders
+from edge.simulation.boxes import Box
+from edge.simulation.lens import FAR_M, NEAR_M, Lens
+from edge.simulation.meshes import corners_of
+from edge.simulation.scene import Scene
+from edge.simulation.surface import Surface
+from edge.simulation.tessellation import tessellate
+from edge.simulation.uniforms import set_lamps, set_lens, set_surface, texture_of
+from models.arrays import Float32
+
+if TYPE_CHECKING:
+    import moderngl
+
+_SAMPLES = 4
+"""Across and down in each pixel."""
+_TILE_PX = 256
+
+
+class RoomPainter:
+    """Paints a scene's room for any camera."""
+
+    def __init__(self, gl: "moderngl.Context", scene: Scene) -> None:
+        self._gl = gl
+        self._room = [(surface, corners_of(surface), texture_of(gl, surface)) for surface in scene.room]
+        self._program = gl.program(shaders.ROOM_VERTEX, shaders.ROOM_FRAGMENT)
+        set_lamps(self._program, scene.lamps, scene.ambient)
+        self._depths_program = gl.program(shaders.WHOLE_VERTEX, shaders.DEPTHS_FRAGMENT)
+        self._depths_program["near_far"] = (NEAR_M, FAR_M)
+        self._depths = gl.vertex_array(self._depths_program, [])
+        fine = _TILE_PX * _SAMPLES
+        self._tile = gl.framebuffer([gl.texture((fine, fine), 4, dtype="f4")], gl.depth_renderbuffer((fine, fine)))
+
+    def paint(self, lens: Lens) -> tuple[Float32, "moderngl.Texture"]:
+        """(H, W, 3) linear light, and depths in metres along the axis in the four samples of each pixel."""
+        with self._pieces(lens) as pieces:
+            return self._light(lens, pieces), self._sample_depths(lens, pieces)
+
+    @contextmanager
+    def _pieces(self, lens: Lens) -> Iterator["list[tuple[Surface, moderngl.Texture | None, moderngl.VertexArray]]"]:
+        """Surfaces cut for the camera."""
+        gl, pieces, buffers = self._gl, [], []
+        for surface, corners, texture in self._room:
+            cut = tessellate(corners, lens)
+            if len(cut):
+                buffer = gl.buffer(cut.astype(np.float32).tobytes())
+                layout = [(buffer, "3f 3f 3f 2f", "place", "normal", "colour", "uv")]
+                pieces.append((surface, texture, gl.vertex_array(self._program, layout)))
+                buffers.append(buffer)
+        try:
+            yield pieces
+        finally:
+            for _, _, array in pieces:
+                array.release()
+            for buffer in buffers:
+                buffer.release()
+
+    def _draw(self, pieces: "list[tuple[Surface, moderngl.Texture | None, moderngl.VertexArray]]") -> None:
+        self._gl.enable_only(self._gl.DEPTH_TEST)
+        for surface, texture, array in pieces:
+            set_surface(self._program, surface, texture)
+            array.render()
+
+    def _light(self, lens: Lens, pieces: "list[tuple[Surface, moderngl.Texture | None, moderngl.VertexArray]]") -> Float32:
+        width, height = lens.camera.size_px
+        light = np.empty((height, width, 3), np.float32)
+        for top in range(0, height, _TILE_PX):
+            for left in range(0, width, _TILE_PX):
+                self._tile.use()
+                self._tile.clear()
+                set_lens(self._program, lens, Box(left, top, left + _TILE_PX, top + _TILE_PX))
+                self._draw(pieces)
+                drawn = np.frombuffer(self._tile.read(components=3, dtype="f4"), np.float32)
+                drawn = drawn.reshape(_TILE_PX, _SAMPLES, _TILE_PX, _SAMPLES, 3).mean((1, 3))
+                light[top : top + _TILE_PX, left : left + _TILE_PX] = drawn[: height - top, : width - left]
+        return light
+
+    def _sample_depths(
+        self, lens: Lens, pieces: "list[tuple[Surface, moderngl.Texture | None, moderngl.VertexArray]]"
+    ) -> "moderngl.Texture":
+        gl, size = self._gl, lens.camera.size_px
+        samples = gl.depth_texture(size, samples=4)
+        target = gl.framebuffer([], samples)
+        target.use()
+        target.clear()
+        set_lens(self._program, lens)
+        self._draw(pieces)
+        depths = gl.texture(size, 4, dtype="f4")
+        depths.filter = (gl.NEAREST, gl.NEAREST)
+        out = gl.framebuffer([depths])
+        out.use()
+        gl.enable_only(gl.NOTHING)
+        samples.use(0)
+        self._depths_program["depths"] = 0
+        self._depths.render(vertices=3)
+        for spent in (out, target, samples):
+            spent.release()
+        return depths
