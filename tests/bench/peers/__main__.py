@@ -9,7 +9,6 @@ setting that came out best on the truth.
 
 import argparse
 import statistics
-import tempfile
 from collections.abc import Iterable, Mapping
 from itertools import chain
 from pathlib import Path
@@ -24,10 +23,10 @@ from models.skeleton import coco
 from tests.bench.footage import FULL_WIDTH_PX, MIN_SCORE, RIG, TESTED, for_peers
 from tests.bench.footage_run import FLUSH_FRAMES, RATE_HZ, load_videos, look, pupil_keypoints, reconstruct
 from tests.bench.metrics.limbs import limb_variation_pct
-from tests.bench.metrics.position import margin_pct
 from tests.bench.metrics.reprojection import reprojection_px
 from tests.bench.peers import aniposelib_group, ours, pose2sim_project
-from tests.bench.peers.answer import Answer, Keypoints
+from tests.bench.peers.answer import Answer
+from tests.bench.peers.ask import ask_peers, margins_pct
 from tests.bench.peers.clips import MOTIONS, Clip, make_clip
 from tests.bench.peers.score import Score, score_all
 from tests.bench.report import Report
@@ -37,7 +36,6 @@ JUDGED = slice(15, -15)
 """Without the half second in which live estimates begin, and the peers' filters end."""
 FREE_MOTION = "walk_throw"
 TURNS = 3
-PEERS = (pose2sim_project.NAME, aniposelib_group.NAME)
 SETTINGS = {
     f"{who.NAME}.{setting}": text for who in (ours, pose2sim_project, aniposelib_group) for setting, text in who.SETTINGS.items()
 }
@@ -94,15 +92,6 @@ def ask_all(clips: list[Clip]) -> list[list[Answer]]:
     return [list(chain(*answers)) for answers in zip(own, *ask_peers(keypoints), strict=True)]
 
 
-def ask_peers(keypoints: list[Keypoints]) -> list[list[list[Answer]]]:
-    """Each peer's answers in all its settings to each clip."""
-    found = []
-    for ask in (pose2sim_project.run_pose2sim, aniposelib_group.run_aniposelib):
-        with tempfile.TemporaryDirectory() as folder:
-            found.append(ask(Path(folder), keypoints))
-    return found
-
-
 def judge(clip: Clip, answers: Iterable[Answer]) -> list[tuple[Answer, Score]]:
     """Hold answers against the truth at the instants that they are of."""
     answers = list(answers)
@@ -130,12 +119,12 @@ def summary(rows: list[Row]) -> dict[str, float]:
 
 def margins(methods: Mapping[str, Mapping[str, float]], suffix: str) -> dict[str, float]:
     """Our margins over the best setting of each peer, smooth and live."""
-    found = {}
-    for peer in PEERS:
-        best = min(figures["mpjpe_mm"] for method, figures in methods.items() if method.startswith(f"{peer}."))
-        found[f"margin_pct.{peer}{suffix}"] = margin_pct(methods["ours.smooth"]["mpjpe_mm"], best)
-        found[f"margin_pct.{peer}.live{suffix}"] = margin_pct(methods["ours.live"]["mpjpe_mm"], best)
-    return found
+    mpjpe_mm = {method: figures["mpjpe_mm"] for method, figures in methods.items()}
+    return {
+        f"margin_pct.{peer}{kind}{suffix}": margin
+        for kind, method in (("", "ours.smooth"), (".live", "ours.live"))
+        for peer, margin in margins_pct(method, mpjpe_mm).items()
+    }
 
 
 def on_footage(data: Path) -> dict[str, dict[str, float]]:

@@ -1,0 +1,1 @@
+"""Video with known truth through the whole box: how far the joints are from where they were. `make bench-reconstruct`."""
