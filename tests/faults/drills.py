@@ -28,6 +28,8 @@ VICTIM = "cam03"
 PERIOD_S = 36.0
 ILL_S = 3.0
 AT_S = {"stall": 24.0, "repeat": 33.0, "jump": 42.0, "end": 51.0}
+SPARE_READY_S = 3.0
+"""Younger than this, a spare that rests may only be waiting for the disk."""
 RECOVERS_WITHIN_S = 60.0
 WATCHED_S = 3.0
 """After a recovery: what comes back must stay."""
@@ -133,12 +135,12 @@ def began(
 
 
 def _waits(spare: psutil.Process | None) -> bool:
-    """Whether a spare has got ready: it then takes no more CPU."""
-    if spare is None:
+    """Whether a spare has got ready: it then takes no more CPU. How much it took until then is the machine's matter."""
+    if spare is None or time.time() - spare.create_time() < SPARE_READY_S:
         return False
     before = sum(spare.cpu_times()[:2])
-    time.sleep(0.1)
-    return before > 0.5 and sum(spare.cpu_times()[:2]) == before
+    time.sleep(0.2)
+    return sum(spare.cpu_times()[:2]) == before
 
 
 def process_drill(name: str, number: signal.Signals) -> Callable[[Stage], Outcome]:
