@@ -7,6 +7,8 @@ import pytest
 
 from edge.footage.prepare import is_ready
 from edge.footage.sets import ONE_PERSON, Footage
+from edge.simulation.graphics import open_context
+from models.errors import UserError
 
 ROOT = Path(__file__).parents[1]
 DATA = ROOT / "build"
@@ -21,6 +23,14 @@ def require_footage(footage: Footage = ONE_PERSON) -> Path:
 def require_networks() -> Path:
     """The data folder, with the converted networks in it."""
     return _require((DATA / "networks/installed.json").is_file(), "the networks are not in build/networks; run `make networks`")
+
+
+def require_graphics() -> None:
+    """OpenGL over EGL, with which simulated pictures are drawn."""
+    try:
+        open_context().release()
+    except UserError as error:
+        _require(False, str(error))
 
 
 def _require(there: bool, reason: str) -> Path:
