@@ -169,12 +169,14 @@ class FusionConfig:
         frame_s: the output grid, and what a lag of "frames" means.
         live_lag_frames: how far live output is behind the tick.
         smooth_lag_frames: how far smooth output is behind live output.
+        landmark_bias: (17, 3) what is taken off the joints that are given out, see `services.fusion.landmarks`; None takes nothing.
     """
 
     preset: str
     frame_s: float = 1 / 30
     live_lag_frames: int = 2
     smooth_lag_frames: int = 5
+    landmark_bias: Float | None = None
     sighting: SightingConfig = SightingConfig()
     timing: TimingConfig = TimingConfig()
     triangulation: TriangulationConfig = TriangulationConfig()

@@ -16,6 +16,7 @@ from models.messages.motion import CameraUse, JointState, Motion
 from models.messages.observation import Observation
 from models.skeleton import coco
 from services.fusion.config import FusionConfig
+from services.fusion.landmarks import corrected
 from services.fusion.prediction import predict_crop
 from services.fusion.reconstruction import Reconstruction
 from services.fusion.verdict import Pose
@@ -184,6 +185,8 @@ def _motions(state: FusionState, now_s: float, config: FusionConfig) -> tuple[Mo
         live, smooth = _NOBODY, [_NOBODY] * len(grid)
         if reconstruction.pupil is not None:
             live, smooth = reconstruction.pupil.poses(min(now_s, ends_s), live_s, grid, config)
+            if config.landmark_bias is not None:
+                live, *smooth = (corrected(pose, config.landmark_bias) for pose in (live, *smooth))
         if begins_s <= live_s < ends_s:
             motions.append(_motion(state, "live", reconstruction, live_s, live))
         motions += [
