@@ -34,7 +34,7 @@ class Guide:
 
     Attributes:
         side: the hand that follows.
-        offset_m: (3,) of its wrist in the frame of the other side's hand.
+        offset_m: (T, 3) of its wrist from the other wrist, in the other hand's frame.
         weight: (T,) 1 follows, 0 goes by its own words.
         pole: (3,) to where its elbow points, in the chest's frame.
     """

@@ -4,8 +4,8 @@
 - Racket: the origin is in the middle of the grip, z goes along the shaft to the head, x is square to the strings.
 - Shuttlecock: the origin is the tip of the cork, z goes from there to the feathers.
 
-Schools play basketball with size 5 and football with size 4 (rules of FIBA and FIFA for the young); rackets and shuttlecocks are those
-of the BWF's laws.
+Schools play basketball with size 5 and football with size 4 (rules of FIBA and FIFA for the young); rackets and shuttlecocks are
+those of the BWF's laws.
 """
 
 from typing import Final

@@ -8,6 +8,7 @@ the body gives way to the swing of its limbs, and leaves the floor with the very
 Times are seconds from the motion's beginning, lengths are leg lengths (hip to ankle), so that a child's motion is a child's size.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import Final, Literal
 
@@ -18,17 +19,26 @@ from models.motions import posing, rotations, splines
 from models.motions.ballistics import GRAVITY_M_S2
 from models.motions.figure import Figure
 from models.motions.grounding import balanced
-from models.motions.motion import CONTACTS, RATE_HZ, Attempt, Motion, Thing
+from models.motions.motion import CONTACTS, RATE_HZ, Attempt, Handed, Motion, Thing
 from models.motions.standing import standing_values
 from models.motions.subject import Subject
-from models.motions.vocabulary import Arm, Body, Leg
+from models.motions.vocabulary import Arm, Body, Direction, Leg
 
 Side = Literal["left", "right"]
 
-SOFT_S: Final = 0.017
+SOFT_S: Final = 0.012
 """Deviation of the Gaussian that rounds the corners of words."""
 _YIELD_S: Final = 0.09
 """How long a foot takes from being held to being free, and back."""
+
+
+Vary = Callable[[str, Float], Float]
+"""Natural variation: another value for a word."""
+
+
+def snapped(at_s: float) -> float:
+    """The time of the nearest sample, so that what happens happens at one."""
+    return round(at_s * RATE_HZ) / RATE_HZ
 
 
 @dataclass(frozen=True)
@@ -39,7 +49,6 @@ class _Step:
     place: tuple[float, float]
     yaw_deg: float
     height: float
-    free: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,20 +61,34 @@ class Poses:
 
 
 class Timeline:
-    """Collects key poses; begins in `stand` at time 0."""
+    """Collects key poses; begins in `stand` at time 0.
 
-    def __init__(self, subject: Subject) -> None:
+    Everything is said of a right-handed person. For a left-handed one right and left change their places, here and nowhere else.
+    """
+
+    def __init__(self, subject: Subject, handed: Handed = "right", vary: Vary | None = None) -> None:
         self.figure = Figure(subject)
+        self._mirrored = handed == "left"
+        self._vary = vary
         self._home = standing_values(self.figure)
         self._knots: dict[str, dict[float, Float]] = {name: {0.0: value} for name, value in self._home.items()}
         self._steps: list[_Step] = []
         self._flights: list[tuple[float, float]] = []
-        self._guides: list[tuple[Side, Float, Float, dict[float, Float]]] = []
+        self._guides: list[tuple[Side, Float, dict[float, Float], dict[float, Float]]] = []
 
     @property
     def leg_m(self) -> float:
         """The unit of lengths."""
         return self.figure.leg_m
+
+    def side(self, side: Side) -> Side:
+        """Whose side that is: the other one for a left-handed person."""
+        return side if not self._mirrored else "left" if side == "right" else "right"
+
+    @property
+    def across(self) -> Float:
+        """(3,) by which directions and places are multiplied for this person: y goes the other way for a left-handed one."""
+        return np.array((1.0, -1.0 if self._mirrored else 1.0, 1.0))
 
     def key(
         self,
@@ -84,11 +107,16 @@ class Timeline:
             ("right_leg.", right_leg),
         ):
             if words is not None:
+                side, limb = prefix.split("_")
+                side = self.side("left" if side == "left" else "right")
                 for field in fields(words):
-                    self._set(at_s, prefix + field.name, getattr(words, field.name))
+                    self._say(at_s, f"{side}_{limb}{field.name}", field.name, getattr(words, field.name))
         if body is not None:
-            for name in ("facing", "tip", "side", "lean", "bow", "twist", "gaze"):
-                self._set(at_s, name, getattr(body, name))
+            for name, value in (("tip", body.tip), ("lean", body.lean)):
+                self._say(at_s, name, name, value)
+            for name, value in (("facing", body.facing), ("side", body.side), ("bow", body.bow), ("twist", body.twist)):
+                self._say(at_s, name, name, value, self.across[1])
+            self._say(at_s, "gaze", "gaze", body.gaze, np.array((self.across[1], 1.0)))
             self._set_pelvis(at_s, body.at, body.height)
 
     def arms(self, at_s: float, both: Arm) -> None:
@@ -118,7 +146,8 @@ class Timeline:
             pitch: with which it lands, degrees: below 0 on the heel, above 0 on the toes.
             flat_s: from the landing until it stands flat.
         """
-        self._move(_Step(side, lift_s, land_s, place, yaw, height, free=False))
+        side, place = self.side(side), (place[0], place[1] * self.across[1])
+        self._move(_Step(side, snapped(lift_s), snapped(land_s), place, yaw, height))
         if pitch or flat_s:
             self._set(land_s, f"{side}_foot.pitch", pitch)
             self._set(land_s + flat_s, f"{side}_foot.pitch", 0.0)
@@ -135,7 +164,8 @@ class Timeline:
         flat_s: float = 0.1,
     ) -> None:
         """A foot leaves the floor, goes by the words of its leg (`Leg`), and lands. Arguments as `step`."""
-        self._move(_Step(side, lift_s, land_s, place, yaw, height=0.1, free=True))
+        side, place = self.side(side), (place[0], place[1] * self.across[1])
+        self._move(_Step(side, snapped(lift_s), snapped(land_s), place, yaw, height=0.1))
         ease = min(_YIELD_S, 0.4 * (land_s - lift_s))
         for at_s, hold in ((lift_s, 1.0), (lift_s + ease, 0.0), (land_s - ease, 0.0), (land_s, 1.0)):
             self._set(at_s, f"{side}_foot.hold", hold)
@@ -145,7 +175,7 @@ class Timeline:
 
     def pitch(self, at_s: float, side: Side, degrees: float) -> None:
         """A held foot raises its heel (above 0) or its toes (below 0) at least this far."""
-        self._set(at_s, f"{side}_foot.pitch", degrees)
+        self._set(at_s, f"{self.side(side)}_foot.pitch", degrees)
 
     def knee(self, at_s: float, side: Side, degrees: float) -> None:
         """The knee over a held foot points so far beside the toes: outwards, or inwards (below 0)."""
@@ -153,32 +183,45 @@ class Timeline:
 
     def flight(self, off_s: float, on_s: float) -> None:
         """Nothing touches the floor in between; both times need a key of the pelvis."""
-        self._flights.append((off_s, on_s))
+        self._flights.append((snapped(off_s), snapped(on_s)))
 
-    def guide(self, side: Side, offset_m: Float, pole: tuple[float, float, float], weights: dict[float, float]) -> None:
-        """A hand stays with a point fixed to the other hand (see `posing.Guide`); `weights` at times."""
-        knots = {at_s: np.array(weight) for at_s, weight in weights.items()}
-        self._guides.append((side, offset_m, np.array(pole) * posing.OUT[side], knots))
+    def guide(self, side: Side, pole: Direction, weights: dict[float, float], offsets_m: dict[float, Float]) -> None:
+        """A hand stays with a point near the other hand (see `posing.Guide`): weights and (3,) offsets at times.
+
+        Args:
+            side: the hand that follows.
+            pole: (front, out, up) where its elbow points, against the chest.
+            weights: 1 follows, 0 does not.
+            offsets_m: of its wrist from the other wrist, in the other hand's frame, for a right-handed person.
+        """
+        side = self.side(side)
+        offsets = {snapped(at_s): offset * self.across for at_s, offset in offsets_m.items()}
+        knots = {snapped(at_s): np.array(weight) for at_s, weight in weights.items()}
+        self._guides.append((side, np.array(pole) * posing.OUT[side], knots, offsets))
 
     def stand(self, at_s: float, at: tuple[float, float] = (0.0, 0.0)) -> None:
         """Back in `stand`, there; feet that are elsewhere must have stepped."""
         for name, value in self._home.items():
             if "_foot." not in name and name != "pelvis":
-                self._knots[name][at_s] = value
+                self._knots[name][snapped(at_s)] = value
         self._set_pelvis(at_s, at, 1.0)
 
-    def _set(self, at_s: float, name: str, value: float | tuple[float, ...] | None) -> None:
+    def _say(self, at_s: float, name: str, word: str, value: float | tuple[float, ...] | None, mirror: Float | float = 1.0) -> None:
         if value is not None:
-            self._knots[name][at_s] = np.asarray(value, np.float64)
+            said = np.asarray(value, np.float64)
+            self._set(at_s, name, mirror * (said if self._vary is None else self._vary(word, said)))
+
+    def _set(self, at_s: float, name: str, value: float | Float) -> None:
+        self._knots[name][snapped(at_s)] = np.asarray(value, np.float64)
 
     def _set_pelvis(self, at_s: float, at: tuple[float, float] | None, height: float | None) -> None:
         if at is None and height is None:
             return
         times, values = self._ordered("pelvis")
         now = splines.monotone(times, values, np.array([at_s]))[0]
-        place = now[:2] if at is None else self.leg_m * np.array(at)
+        place = now[:2] if at is None else self.leg_m * np.array(at) * self.across[:2]
         up = now[2] if height is None else self._home["pelvis"][2] * height
-        self._knots["pelvis"][at_s] = np.array((*place, up))
+        self._set(at_s, "pelvis", np.array((*place, up)))
 
     def _move(self, step: _Step) -> None:
         if any(other.side == step.side and other.land_s > step.lift_s for other in self._steps):
@@ -188,9 +231,7 @@ class Timeline:
         self._steps.append(step)
 
     def _ordered(self, name: str) -> tuple[Float, Float]:
-        knots = self._knots[name]
-        times = np.array(sorted(knots))
-        return times, np.stack([knots[at_s] for at_s in times])
+        return _in_order(self._knots[name])
 
     def _sampled(self, at_s: Float, even: bool) -> dict[str, Float]:
         """All words at these times; `even` says that they are `RATE_HZ` apart, so that corners can be rounded."""
@@ -220,9 +261,8 @@ class Timeline:
 
     def _posed(self, values: dict[str, Float], at_s: Float) -> Float:
         guides = []
-        for side, offset, pole, knots in self._guides:
-            times = np.array(sorted(knots))
-            weight = splines.monotone(times, np.stack([knots[time] for time in times]), at_s)
+        for side, pole, weights, offsets in self._guides:
+            weight, offset = (splines.monotone(*_in_order(knots), at_s) for knots in (weights, offsets))
             guides.append(posing.Guide(side, offset, weight, pole))
         return posing.upper_body(self.figure, values, tuple(guides))
 
@@ -245,7 +285,7 @@ class Timeline:
 
     @staticmethod
     def _number(times: Float, at_s: float) -> int:
-        found = np.flatnonzero(times == at_s)
+        found = np.flatnonzero(np.abs(times - at_s) < 1e-9)
         if len(found) != 1:
             raise ValueError(f"a flight begins or ends at {at_s:.3f} s, where the pelvis has no key")
         return int(found[0])
@@ -282,3 +322,8 @@ class Timeline:
         """Sampled poses as a motion."""
         turned = rotations.vectors(poses.local)
         return Motion(poses.pelvis_m, turned, self.contacts(poses.times_s), attempts, things)
+
+
+def _in_order(knots: dict[float, Float]) -> tuple[Float, Float]:
+    times = np.array(sorted(knots))
+    return times, np.stack([knots[at_s] for at_s in times])

@@ -2,8 +2,9 @@
 
 from typing import Final
 
+from models.motions.actions import badminton_clear, basketball_shot
 from models.motions.actions.action import Action
 
-_ALL: Final[tuple[Action, ...]] = ()
+_ALL: Final[tuple[Action, ...]] = (basketball_shot.ACTION, badminton_clear.ACTION)
 
 ACTIONS: Final[dict[str, Action]] = {action.name: action for action in _ALL}
