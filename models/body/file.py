@@ -94,6 +94,20 @@ def decode(data: bytes, name: str) -> BodyModel:
     )
 
 
+def coco_regressor(data: bytes, name: str) -> Float:
+    """(23, V) the regressor by which `decode` makes the landmarks, for bodies that are altered from the file's.
+
+    Raises:
+        UserError: as `decode`; also a file without this key.
+    """
+    reader = _Reader(arrays := _arrays(data, name), name)
+    reader.check_version()
+    if "coco_regressor" not in arrays:
+        reader.refuse("coco_regressor", "is missing, which an altered body needs; use the body that KineBox ships")
+    vertices = len(reader.floats("v_template", (None, 3)))
+    return np.asarray(reader.rows_that_sum_to_one("coco_regressor", (coco_feet.COUNT, vertices)))
+
+
 def _arrays(data: bytes, name: str) -> dict[str, Array]:
     try:
         with np.load(io.BytesIO(data), allow_pickle=False) as archive:
