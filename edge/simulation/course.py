@@ -1,10 +1,11 @@
 """Where vertices are while a picture is taken: a polynomial in time for each, so that every row can ask for its own instant."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from edge.simulation.scene import Actor
 from edge.simulation.shutter import Shutter
 from models.arrays import Float
 
@@ -39,21 +40,48 @@ def half_s(shutter: Shutter) -> float:
     return max((shutter.readout_s + shutter.exposure_s) / 2, _SHORTEST_S)
 
 
-def course_of(vertices_m: Callable[[float], Float | None], t_s: float, shutter: Shutter) -> Course | None:
+def course_through(places_m: Callable[[float], Float], t_s: float, shutter: Shutter) -> Course:
+    """The course through a picture at `t_s` of points that are always there; `places_m` gives (V, 3) at a time."""
+    half = half_s(shutter)
+    nodes = np.stack([places_m(t_s + half * float(node)) for node in NODES])
+    return Course(t_s, half, np.tensordot(_TO_POWERS, nodes, axes=1))
+
+
+def course_of(actor: Actor, t_s: float, shutter: Shutter) -> Course | None:
     """The course through a picture at `t_s`.
 
-    Args:
-        vertices_m: (V, 3) at a time, as `edge.simulation.scene.Actor` has it.
-        t_s: time of the picture.
-        shutter: how long it takes.
-
     Returns:
-        None if there is nothing at the picture's time. What comes or goes while the picture is taken stands still in it.
+        None if the actor is not there at the picture's time. One who comes or goes while the picture is taken stands still in it.
     """
-    half = half_s(shutter)
-    nodes = [vertices_m(t_s + half * float(node)) for node in NODES]
-    known = [places for places in nodes if places is not None]
-    if len(known) == len(NODES):
-        return Course(t_s, half, np.tensordot(_TO_POWERS, np.stack(known), axes=1))
-    middle = vertices_m(t_s)
-    return None if middle is None else Course(t_s, half, middle[None])
+    try:
+        return course_through(lambda when: _present(actor, when), t_s, shutter)
+    except _AbsentError:
+        middle = actor.vertices_m(t_s)
+        return None if middle is None else Course(t_s, half_s(shutter), middle[None])
+
+
+class _AbsentError(Exception):
+    pass
+
+
+def _present(actor: Actor, t_s: float) -> Float:
+    places = actor.vertices_m(t_s)
+    if places is None:
+        raise _AbsentError
+    return places
+
+
+class Courses:
+    """Courses of some actors, kept until another picture is taken: other cameras expose at the same time, and truth asks, too."""
+
+    def __init__(self, actors: Sequence[Actor]) -> None:
+        self._actors = actors
+        self._taken: tuple[float, Shutter] | None = None
+        self._courses: list[Course | None] = []
+
+    def at(self, t_s: float, shutter: Shutter) -> list[Course | None]:
+        """Through a picture at `t_s`, in the order of the actors; None for who is not there."""
+        if self._taken != (t_s, shutter):
+            self._courses = [course_of(actor, t_s, shutter) for actor in self._actors]
+            self._taken = t_s, shutter
+        return self._courses

@@ -74,7 +74,7 @@ def flow_px(view: View, dense: Dense, next_t_s: float) -> Float:
     flow[dense.shown >= len(actors)] = 0.0
     for index, actor in enumerate(actors):
         rows, columns = np.nonzero(dense.shown == index)
-        course = course_of(actor.vertices_m, next_t_s, view.shutter) if len(rows) else None
+        course = course_of(actor, next_t_s, view.shutter) if len(rows) else None
         if course is None:
             continue
         corners = actor.surface.faces[dense.faces[rows, columns]]
@@ -102,7 +102,7 @@ class DensePainter:
 
     def draw(self, t_s: float) -> Dense:
         """The dense truth of the picture at `t_s`."""
-        gl, view, scene = self._gl, self._view, self._view.renderer.scene
+        gl, view = self._gl, self._view
         self._target.use()
         gl.enable_only(gl.DEPTH_TEST)
         self._target.clear(-1.0, -1.0, -1.0, -1.0)
@@ -112,13 +112,12 @@ class DensePainter:
         for number, buffer in self._room:
             self._room_program["shown"] = number
             _draw_once(gl, self._room_program, [(buffer, "3f 2f 1f", "place", "weights", "number")])
-        for number, actor in enumerate((*scene.pupils, *scene.things)):
-            course = course_of(actor.vertices_m, t_s, view.shutter)
+        for number, course in enumerate(view.renderer.courses.at(t_s, view.shutter)):
             if course is None:
                 continue
             self._moving_program["shown"] = number
             self._moving_program["readout"] = view.shutter.readout_s / course.half_s
-            buffer = gl.buffer(_face_corners(course, actor.surface).tobytes())
+            buffer = gl.buffer(_face_corners(course, view.renderer.performers[number].actor.surface).tobytes())
             names = ("power_0", "power_1", "power_2", "power_3")
             _draw_once(gl, self._moving_program, [(buffer, "3f 3f 3f 3f", *names)])
             buffer.release()

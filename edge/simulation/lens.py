@@ -10,7 +10,6 @@ from functools import cached_property
 
 import numpy as np
 
-from edge.simulation.shutter import Shutter
 from models.arrays import Float
 from models.camera.pinhole import Camera
 from models.compiled import compiled
@@ -77,11 +76,6 @@ def lens_of(camera: Camera) -> Lens:
             "calibrate it again or correct the coefficients (k1, k2, p1, p2, k3)"
         )
     return Lens(camera, float(radii[int(np.argmax(reaches))]))
-
-
-def row_share(shutter: Shutter, half_s: float) -> float:
-    """Readout from the first row to the last in units of a course's half duration."""
-    return shutter.readout_s / half_s
 
 
 @compiled

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from edge.simulation.course import Course, course_of
+from edge.simulation.course import Course
 from edge.simulation.meshes import appearance, is_closed, normals, welded
 from edge.simulation.scene import Actor
 from edge.simulation.shutter import Shutter
@@ -18,12 +18,11 @@ _TERMS = 4
 
 
 class Performer:
-    """An actor, and where it is in the picture that is being taken.
+    """An actor.
 
     Attributes:
         actor: the actor.
         faces: (F, 3) its triangles.
-        course: of its vertices; None while it is not there.
         closed: whether its surface has no edge, so that its inner side is never seen.
     """
 
@@ -31,10 +30,9 @@ class Performer:
         surface = actor.surface
         self.actor = actor
         self.faces = np.ascontiguousarray(surface.faces, np.int32)
-        self.course: Course | None = None
         self._welds = welded(np.asarray(surface.vertices_m))
         self.closed = is_closed(self._welds[self.faces])
-        self._taken: tuple[float, Shutter] | None = None
+        self._loaded: Course | None = None
         self._program = program
         count = len(surface.vertices_m)
         self._powers = gl.buffer(reserve=count * _TERMS * 12, dynamic=True)
@@ -47,19 +45,15 @@ class Performer:
         ]
         self._array = gl.vertex_array(program, layout, index_buffer=gl.buffer(self.faces.tobytes()))
 
-    def take(self, t_s: float, shutter: Shutter) -> Course | None:
-        """Its course through a picture, ready to be drawn; kept for the next camera that takes a picture at the same time."""
-        if self._taken == (t_s, shutter):
-            return self.course
-        self.course = course = course_of(self.actor.vertices_m, t_s, shutter)
-        self._taken = t_s, shutter
-        if course is not None:
+    def load(self, course: Course) -> None:
+        """Make it ready to be drawn along a course; kept for the next camera that takes a picture at the same time."""
+        if self._loaded is not course:
+            self._loaded = course
             self._powers.write(packed(course).tobytes())
             self._normals.write(normals(course.powers[0], self.faces, self._welds).astype(np.float32).tobytes())
-        return course
 
     def draw(self, course: Course, shutter: Shutter) -> None:
-        """Draw it where `take` said."""
+        """Draw it along the course that was loaded."""
         self._program["readout"] = shutter.readout_s / course.half_s
         set_surface(self._program, self.actor.surface, self._texture)
         self._array.render()

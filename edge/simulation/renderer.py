@@ -13,7 +13,7 @@ import numpy as np
 
 from edge.simulation import shaders
 from edge.simulation.boxes import Box, joined
-from edge.simulation.course import Course, half_s
+from edge.simulation.course import Course, Courses, half_s
 from edge.simulation.empty_room import RoomPainter
 from edge.simulation.graphics import open_context
 from edge.simulation.lens import Lens, land, lens_of
@@ -41,7 +41,8 @@ class Renderer:
     Attributes:
         scene: the scene.
         context: the graphics library's.
-        performers: what moves, in the order of pupils, then things.
+        performers: what moves: pupils, then things.
+        courses: of the performers.
 
     Raises:
         UserError: what it needs is not installed; says what to install.
@@ -54,6 +55,7 @@ class Renderer:
         self._program = gl.program(shaders.MOVING_VERTEX, shaders.MOVING_FRAGMENT)
         set_lamps(self._program, scene.lamps, scene.ambient)
         self.performers = [Performer(gl, self._program, actor) for actor in (*scene.pupils, *scene.things)]
+        self.courses = Courses([performer.actor for performer in self.performers])
         self._gather_program = gl.program(shaders.WHOLE_VERTEX, shaders.GATHER_FRAGMENT)
         self._gather = gl.vertex_array(self._gather_program, [])
         self._targets: dict[tuple[int, int], _Target] = {}
@@ -85,6 +87,7 @@ class Renderer:
             target.sampled.scissor = box.as_viewport
             target.sampled.clear()
             for seen in cast:
+                seen.performer.load(seen.course)
                 gl.enable_only(gl.DEPTH_TEST | gl.CULL_FACE if seen.performer.closed else gl.DEPTH_TEST)
                 seen.performer.draw(seen.course, view.shutter)
             target.gathered.use()
@@ -152,8 +155,7 @@ class View:
         """The picture whose middle row is exposed around `t_s`, in the scene's time."""
         picture = self.room.copy()
         cast = []
-        for performer in self.renderer.performers:
-            course = performer.take(t_s, self.shutter)
+        for performer, course in zip(self.renderer.performers, self.renderer.courses.at(t_s, self.shutter), strict=True):
             if course is not None:
                 seen = _Seen(performer, course, self.lens, self.shutter)
                 cast += [] if seen.box.empty else [seen]

@@ -25,7 +25,7 @@ class Flinger:
     name: str
     place_m: tuple[float, float]
     colour: tuple[float, float, float]
-    rate_rad_s: float = 9.0
+    rate_rad_s: float = 15.0
     surface: Surface = field(init=False)
 
     def __post_init__(self) -> None:
@@ -108,7 +108,7 @@ def room() -> tuple[Surface, ...]:
     )
 
 
-def moving_scene(rate_rad_s: float = 9.0) -> Scene:
+def moving_scene(rate_rad_s: float = 15.0) -> Scene:
     """Two pupils, one of whom crosses before the other, a ball and the room."""
     model = body_model()
     pupils = (

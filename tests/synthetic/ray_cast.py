@@ -56,6 +56,11 @@ class RayCaster:
         counts = [len(faces) if vertices is not None else 0 for vertices, faces in parts]
         self._owners = np.repeat(np.arange(len(parts)), counts)
         self._firsts = np.cumsum([0, *counts])
+        # Only triangles around a ray need be looked at; those that reach behind the camera are around all.
+        local = camera.to_camera(self._triangles)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            flat = np.where((local[..., 2:] > 0).all(1, keepdims=True), local[..., :2] / local[..., 2:], np.nan)
+        self._low, self._high = flat.min(1), flat.max(1)
 
     def cast(self, column: float) -> Hit | None:
         """The first surface at a column of the row."""
@@ -68,11 +73,10 @@ class RayCaster:
         return self._first((point_m - self._camera.centre_m) / along, along)
 
     def _first(self, direction: Float, before_m: float) -> Hit | None:
-        start, edge1, edge2 = (
-            self._triangles[:, 0],
-            self._triangles[:, 1] - self._triangles[:, 0],
-            self._triangles[:, 2] - self._triangles[:, 0],
-        )
+        at = (self._camera.rotation @ direction)[:2]
+        near = np.nonzero(~((self._low > at + _NUDGE) | (self._high < at - _NUDGE)).any(1))[0]
+        start, second, third = self._triangles[near].transpose(1, 0, 2)
+        edge1, edge2 = second - start, third - start
         across = np.cross(direction, edge2)
         determinant = (edge1 * across).sum(1)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -85,7 +89,8 @@ class RayCaster:
         if not hit.any():
             return None
         found = int(np.argmin(np.where(hit, depth, np.inf)))
-        owner = int(self._owners[found])
+        number = int(near[found])
+        owner = int(self._owners[number])
         shares = np.array((1 - u[found] - v[found], u[found], v[found]))
         place = self._camera.centre_m + depth[found] * direction
-        return Hit(owner, found - int(self._firsts[owner]), shares, float(depth[found]), place)
+        return Hit(owner, number - int(self._firsts[owner]), shares, float(depth[found]), place)

@@ -16,7 +16,7 @@ from tests.synthetic.ray_cast import Hit, RayCaster
 
 ROLLING = Shutter(exposure_s=0.004, readout_s=0.03)
 GLOBAL = Shutter(exposure_s=0.004, readout_s=0.0)
-T_S = 0.37
+T_S = 0.43
 ACTORS = 4
 CAMERAS = {
     "strong lens": look_at((-3.6, -2.0, 1.9)),
