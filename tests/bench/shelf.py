@@ -44,10 +44,15 @@ def main() -> int:
     parser.add_argument("--shared", type=Path, default=Path("../shared/data"))
     options = parser.parse_args()
     try:
-        shelf = load_shelf(options.shared / "shelf_dev")
+        run(load_shelf(options.shared / "shelf_dev"), options.data)
     except UserError as error:
         sys.stderr.write(f"{error}\n")
         return 2
+    return 0
+
+
+def run(shelf: Shelf, data: Path) -> None:
+    """Measure, print, write."""
     warm_up()
     report = Report("bench-shelf")
     began_s = time.thread_time()
@@ -59,8 +64,7 @@ def main() -> int:
     report.figures["margin.cams024.limbs"] = report.figures["pcp.limbs.cams024"] - report.figures["baseline.pcp.limbs.cams024"]
     report.rows += [{"part": name, **row} for name, row in parts(shelf, grouped).items()]
     report.show(BARS)
-    print(f"written to {report.write(options.data)}")
-    return 0
+    print(f"written to {report.write(data)}")
 
 
 def measure(shelf: Shelf, grouped: list[list[list[Grouped]]], cameras: tuple[int, ...], suffix: str) -> dict[str, float]:
