@@ -10,8 +10,10 @@ from pathlib import Path
 from edge.cameras.shape import VideoShape, read_avi_shape, require_calibrated_size, require_equal_lengths
 from edge.footage.index import Index, remedy
 from edge.perception.network_file import read_network_file
+from edge.simulation.files import film_path
+from edge.simulation.plan import read_plan
 from models.camera.rig import Rig
-from models.config.site import Site
+from models.config.site import CameraConfig, Site
 from models.errors import UserError
 
 NETWORKS = ("movenet-thunder", "movenet-lightning", "nanodet")
@@ -31,9 +33,10 @@ def check(site: Site, rig: Rig, data: Path) -> None:
     """
     videos = {}
     for camera in site.cameras:
-        shape = check_video(data / camera.path, camera.name)
+        path, rate_hz = film_of(camera, data)
+        shape = check_video(path, camera.name)
         require_calibrated_size(camera.name, shape, rig.cameras[rig.index(camera.name)].size_px)
-        videos[camera.name] = (shape, camera.rate_hz)
+        videos[camera.name] = (shape, rate_hz)
     require_equal_lengths(videos)
     if site.inference.provider == "openvino" and find_spec("openvino") is None:
         raise UserError(
@@ -41,6 +44,18 @@ def check(site: Site, rig: Rig, data: Path) -> None:
         )
     for name in NETWORKS:
         read_network_file(name, data)
+
+
+def film_of(camera: CameraConfig, data: Path) -> tuple[Path, float]:
+    """The film that a camera plays, and its rate in Hz.
+
+    Raises:
+        UserError: it is of a lesson that is not there or cannot be read.
+    """
+    path = data / camera.path
+    if camera.kind == "simulated":
+        return film_path(path, camera.name), read_plan(path, camera.name).rate_hz
+    return path, camera.rate_hz
 
 
 def check_video(path: Path, camera: str) -> VideoShape:

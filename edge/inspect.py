@@ -9,9 +9,10 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from edge.cameras.shape import VideoShape, require_calibrated_size, require_equal_lengths
-from edge.check import NETWORKS, check_video
+from edge.check import NETWORKS, check_video, film_of
 from edge.footage.index import INDEX_NAME, Index, remedy
 from edge.perception.network_file import read_network_file
+from edge.simulation.files import FOLDER as LESSONS
 from models.camera.rig import Rig
 from models.config.site import CameraConfig, Site
 from models.errors import UserError
@@ -51,8 +52,8 @@ def _networks(data: Path) -> Iterator[Inspected]:
 
 
 def _footage(data: Path) -> Iterator[Inspected]:
-    """The films that the set-up has prepared, whichever site plays them."""
-    for file in sorted(data.glob(f"footage*/{INDEX_NAME}")):
+    """The films that were prepared or rendered, whichever site plays them."""
+    for file in sorted([*data.glob(f"footage*/{INDEX_NAME}"), *data.glob(f"{LESSONS}/*/{INDEX_NAME}")]):
         index = Index.read(file.parent)
         harmed = [INDEX_NAME] if index is None else index.damaged(file.parent)
         fault = f"{file.parent / harmed[0]} is missing or damaged; {remedy(file.parent)}" if harmed else ""
@@ -63,7 +64,8 @@ def _camera(camera: CameraConfig, rig: Rig | None, data: Path, videos: dict[str,
     path = data / camera.path
 
     def look() -> None:
-        videos[camera.name] = (shape := check_video(path, camera.name), camera.rate_hz)
+        path, rate_hz = film_of(camera, data)
+        videos[camera.name] = (shape := check_video(path, camera.name), rate_hz)
         index = Index.read(path.parent)
         if index is not None and path.name in index.files and path.name in index.damaged(path.parent):
             raise UserError(f"camera '{camera.name}': {path} is damaged (not the hash installed); {remedy(path.parent)}")

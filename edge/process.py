@@ -10,6 +10,7 @@ import msgspec
 
 from edge.cameras.faulty import FaultySource, Script
 from edge.cameras.shape import require_calibrated_size
+from edge.cameras.simulated import open_simulated
 from edge.cameras.source import Clock, Frame, MonotonicClock, PictureError, Source
 from edge.cameras.video import Schedule, VideoSource, load_video
 from edge.cameras.watched import WatchedSource
@@ -67,14 +68,18 @@ def open_source(config: CameraConfig, context: ProcessContext, clock: Clock) -> 
     """The source that the site file describes.
 
     Raises:
-        UserError: its file cannot be played, or its pictures are not of the size that was calibrated.
+        UserError: its file or lesson cannot be played, or its pictures are not of the size that was calibrated.
         SourceError: a fault of the site file's keeps it from being opened now.
     """
     path = context.data / config.path
-    video = load_video(path, config.name)
-    require_calibrated_size(config.name, video.shape(path), context.rig.cameras[context.rig.index(config.name)].size_px)
-    schedule = Schedule(context.start_ns, round(config.shutter_delay_ms * MILLISECOND_NS), config.rate_hz)
-    source = VideoSource(video, schedule, clock)
+    if config.kind == "simulated":
+        source, shape = open_simulated(path, config.name, context.start_ns, clock)
+    else:
+        video = load_video(path, config.name)
+        shape = video.shape(path)
+        delay_ns = round(config.shutter_delay_ms * MILLISECOND_NS)
+        source = VideoSource(video, Schedule(context.start_ns, delay_ns, config.rate_hz), clock)
+    require_calibrated_size(config.name, shape, context.rig.cameras[context.rig.index(config.name)].size_px)
     faults = [fault for fault in context.site.faults if fault.camera == config.name]
     return FaultySource(source, Script(faults, context.start_ns), clock) if faults else source
 

@@ -25,7 +25,7 @@ class Due(NamedTuple):
     """A fault in force, and for how long it has been."""
 
     fault: FaultConfig
-    since_s: float
+    since_ns: int
 
 
 @dataclass(frozen=True)
@@ -44,9 +44,8 @@ class Script:
 
     def due(self, t_ns: int) -> list[Due]:
         """The faults in force at an instant."""
-        t_s = (t_ns - self.start_ns) / SECOND_NS
-        found = ((fault, _since_s(fault, t_s)) for fault in self.faults)
-        return [Due(fault, since_s) for fault, since_s in found if since_s is not None]
+        found = ((fault, _since_ns(fault, t_ns - self.start_ns)) for fault in self.faults)
+        return [Due(fault, since_ns) for fault, since_ns in found if since_ns is not None]
 
     def state(self, t_ns: int) -> FaultConfig | None:
         """What the camera itself does at an instant: ends, stalls or repeats."""
@@ -63,12 +62,12 @@ class Script:
 
     def altered(self, frame: Frame) -> Frame:
         """A picture as the camera shows it: with the time that its clock says, and black where the lens is covered."""
-        error_s, dark = 0.0, False
-        for fault, since_s in self.due(frame.t_mid_ns):
-            error_s += fault.by_s if fault.kind == "jump" else 0.0
-            error_s += fault.ppm * 1e-6 * since_s if fault.kind == "drift" else 0.0
+        error_ns, dark = 0.0, False
+        for fault, since_ns in self.due(frame.t_mid_ns):
+            error_ns += fault.by_s * SECOND_NS if fault.kind == "jump" else 0.0
+            error_ns += fault.ppm * 1e-6 * since_ns if fault.kind == "drift" else 0.0
             dark |= fault.kind == "dark"
-        return Altered(frame, round(error_s * SECOND_NS), dark) if error_s or dark else frame
+        return Altered(frame, round(error_ns), dark) if error_ns or dark else frame
 
     def _hits(self, fault: FaultConfig, frame: Frame) -> bool:
         if fault.share == 1:
@@ -77,12 +76,13 @@ class Script:
         return int.from_bytes(hashlib.blake2b(lot.encode(), digest_size=8).digest()) < fault.share * 2**64
 
 
-def _since_s(fault: FaultConfig, t_s: float) -> float | None:
-    since_s = t_s - fault.at_s
-    if since_s < 0:
+def _since_ns(fault: FaultConfig, t_ns: int) -> int | None:
+    at_ns, for_ns, every_ns = (round(seconds * SECOND_NS) for seconds in (fault.at_s, fault.for_s, fault.every_s))
+    since_ns = t_ns - at_ns
+    if since_ns < 0:
         return None
-    since_s = since_s % fault.every_s if fault.every_s > 0 else since_s
-    return since_s if since_s < fault.for_s else None
+    since_ns = since_ns % every_ns if every_ns > 0 else since_ns
+    return since_ns if since_ns < for_ns else None
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,13 @@
 """A Motion JPEG file played as if it were a camera: in real time, every picture in order, over and over."""
 
 import math
+import os
+import weakref
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
+from typing import Protocol
 
 import av
 
@@ -16,13 +19,21 @@ from models.errors import UserError
 _SECOND_NS = 1_000_000_000
 
 
+class Pictures(Protocol):
+    """Compressed pictures, in memory or wherever they come from when they are asked for."""
+
+    def __len__(self) -> int: ...
+
+    def __getitem__(self, index: int, /) -> bytes: ...
+
+
 @dataclass(frozen=True)
 class Video:
-    """A file in memory: its pictures, compressed. A few tens of MB, so that a loop costs nothing."""
+    """A film: its pictures, compressed."""
 
     camera: str
     size_px: tuple[int, int]
-    pictures: tuple[bytes, ...]
+    pictures: Pictures
 
     def shape(self, path: Path) -> VideoShape:
         """How long and large it is; `path` is where it came from."""
@@ -39,8 +50,41 @@ class Video:
         return JpegFrame(self.camera, epoch, index, t_mid_ns, self.size_px, self.pictures[index])
 
 
+class PicturesOfFile:
+    """The pictures of a file, each read when it is asked for: a long lesson is larger than the memory of a box.
+
+    What cannot be read any more is an empty picture, which is damaged.
+
+    Args:
+        path: the file, which is held open.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._descriptor = os.open(path, os.O_RDONLY)
+        weakref.finalize(self, os.close, self._descriptor)
+        self._places: list[tuple[int, int] | bytes] = []
+
+    def __len__(self) -> int:
+        return len(self._places)
+
+    def append(self, position: int | None, picture: bytes) -> None:
+        """Add a picture, which the file has at `position`; what it has not there, as some containers do, is kept in memory."""
+        place = (position or 0, len(picture))
+        self._places.append(place if self._read(*place) == picture else picture)
+
+    def __getitem__(self, index: int, /) -> bytes:
+        place = self._places[index]
+        return place if isinstance(place, bytes) else self._read(*place)
+
+    def _read(self, position: int, size: int) -> bytes:
+        try:
+            return os.pread(self._descriptor, size, position)
+        except OSError:
+            return b""
+
+
 def load_video(path: Path, camera: str) -> Video:
-    """Read a Motion JPEG file whole.
+    """Open a Motion JPEG file, having seen that every picture of it is whole.
 
     Raises:
         UserError: the file is missing, empty, truncated, may not be read, is no video, or one whose pictures do not stand alone.
@@ -59,12 +103,16 @@ def load_video(path: Path, camera: str) -> Video:
             stream = container.streams.video[0]
             codec = stream.codec_context.name
             size_px, announced = (stream.width, stream.height), stream.frames
-            pictures = tuple(bytes(packet) for packet in container.demux(stream) if packet.size)
+            pictures, whole = PicturesOfFile(path), 0
+            for packet in container.demux(stream):
+                if packet.size:
+                    data = bytes(packet)
+                    pictures.append(packet.pos, data)
+                    whole += is_whole(data)
     except (av.FFmpegError, OSError) as error:
         raise UserError(f"{where} is not a video that can be read ({error}); copy or prepare it again") from error
     if codec != "mjpeg":
         raise UserError(f"{where} is {codec}; only Motion JPEG is played (ffmpeg -i IN -c:v mjpeg -q:v 3 OUT.avi)")
-    whole = sum(map(is_whole, pictures))
     if not pictures or whole < max(len(pictures), announced):
         raise UserError(
             f"{where} is truncated: {whole} of {max(len(pictures), announced)} pictures are whole; copy or prepare it again"
@@ -93,10 +141,20 @@ class Schedule:
         return math.floor((now_ns - self.start_ns - self.offset_ns) * Fraction(self.rate_hz) / _SECOND_NS)
 
 
-class VideoSource:
-    """Plays a `Video` by a `Schedule`. A loop is a new epoch; who comes late gets the newest picture, never a queue."""
+class Timing(Protocol):
+    """When pictures are due, counted over all loops: see `Schedule`."""
 
-    def __init__(self, video: Video, schedule: Schedule, clock: Clock) -> None:
+    def t_ns(self, number: int) -> int:
+        """Mid-exposure of picture `number` (0, 1, ...)."""
+
+    def newest(self, now_ns: int) -> int:
+        """Number of the newest picture that was exposed by `now_ns`; negative before the first."""
+
+
+class VideoSource:
+    """Plays a `Video` by its timing. A loop is a new epoch; who comes late gets the newest picture, never a queue."""
+
+    def __init__(self, video: Video, schedule: Timing, clock: Clock) -> None:
         self._video = video
         self._schedule = schedule
         self._clock = clock
@@ -131,4 +189,4 @@ class VideoSource:
         return self._video.frame(epoch, index, self._schedule.t_ns(newest))
 
     def close(self) -> None:
-        """Nothing is held: the file was read whole."""
+        """The file is let go of with the last of its pictures."""

@@ -5,6 +5,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
+from edge.simulation.files import FOLDER, SHIPPED
 from models.make_command import make_command
 
 INDEX_NAME = "installed.json"
@@ -20,7 +21,7 @@ class Index:
     @classmethod
     def of(cls, recipe: str, paths: list[Path]) -> "Index":
         """Measure files that were just written."""
-        return cls(recipe, {path.name: (path.stat().st_size, _sha256(path)) for path in paths})
+        return cls(recipe, {path.name: (path.stat().st_size, sha256(path)) for path in paths})
 
     @classmethod
     def read(cls, folder: Path) -> "Index | None":
@@ -45,14 +46,19 @@ class Index:
 
 
 def _is_as(path: Path, size: int, digest: str) -> bool:
-    return path.is_file() and path.stat().st_size == size and _sha256(path) == digest
+    return path.is_file() and path.stat().st_size == size and sha256(path) == digest
 
 
-def _sha256(path: Path) -> str:
+def sha256(path: Path) -> str:
+    """Hexadecimal digits of a file's content."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def remedy(folder: Path) -> str:
-    """What to do about prepared footage in `folder` that is harmed."""
-    return f"delete {folder / INDEX_NAME} and run {make_command(f'footage SOURCE={folder.name}', folder.parent)}"
+    """What to do about a prepared footage or a lesson in `folder` that is harmed."""
+    if folder.parent.name != FOLDER:
+        return f"delete {folder / INDEX_NAME} and run {make_command(f'footage SOURCE={folder.name}', folder.parent)}"
+    if folder.name != SHIPPED:
+        return f"delete {folder} and run `kinebox simulate` again"
+    return f"delete {folder / INDEX_NAME} and run {make_command('simulated', folder.parent.parent)}"

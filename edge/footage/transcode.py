@@ -6,6 +6,7 @@ So the edge grabs every picture for nothing and decodes only those that it looks
 import io
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
+from itertools import chain
 from pathlib import Path
 from typing import cast
 
@@ -57,15 +58,28 @@ def _scaled(video: av.container.InputContainer, *, fitted: bool) -> Iterator[UIn
 
 
 def write_motion_jpeg(path: Path, pictures: Iterable[UInt8], rate_hz: Fraction) -> int:
-    """Write BGR pictures (h, w, 3), all of one size, as an AVI file of JPEG pictures; returns their number."""
+    """Write BGR pictures (h, w, 3), all of one size, as an AVI file of JPEG pictures; returns their number.
+
+    Raises:
+        IndexError: there are none.
+    """
+    rest = iter(pictures)
+    first = next(rest, None)
+    if first is None:
+        raise IndexError("a video has at least one picture")
+    height, width = first.shape[:2]
+    return write_jpegs(path, map(encode_jpeg, chain((first,), rest)), (width, height), rate_hz)
+
+
+def write_jpegs(path: Path, pictures: Iterable[bytes], size_px: tuple[int, int], rate_hz: Fraction) -> int:
+    """Write JPEG pictures of one size, (width, height), as an AVI file; returns their number."""
     count = 0
     with av.open(str(path), "w", format="avi") as sink:
         stream = sink.add_stream("mjpeg", rate=rate_hz)
         stream.pix_fmt = "yuvj420p"
+        stream.width, stream.height = size_px
         for count, picture in enumerate(pictures, start=1):
-            if count == 1:
-                stream.height, stream.width = picture.shape[:2]
-            packet = av.Packet(encode_jpeg(picture))
+            packet = av.Packet(picture)
             packet.stream, packet.time_base, packet.is_keyframe = stream, 1 / rate_hz, True
             packet.pts = packet.dts = count - 1
             packet.duration = 1
@@ -79,7 +93,7 @@ def picture_rows(picture: UInt8) -> slice:
     return slice(int(bright[0]), int(bright[-1]) + 1)
 
 
-def encode_jpeg(picture: UInt8) -> bytes:
+def encode_jpeg(picture: UInt8, quality: int = JPEG_QUALITY) -> bytes:
     """A BGR picture (h, w, 3) as baseline JPEG with 4:2:0 chroma."""
-    options = [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_420]
+    options = [cv2.IMWRITE_JPEG_QUALITY, quality, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_420]
     return cv2.imencode(".jpg", picture, options)[1].tobytes()

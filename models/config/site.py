@@ -26,12 +26,23 @@ class CameraConfig(Section, frozen=True):
     """One camera of the room."""
 
     name: Annotated[Name, Meta(description="the camera's name, as in the calibration")]
-    kind: Annotated[Literal["video"], Meta(description="video: a file played in real time")]
-    path: Annotated[str, Meta(min_length=1, description="the file, relative to the data folder")]
-    rate_hz: Annotated[float, Meta(gt=0, le=240, description="frames a second of a file; every frame is shown")] = 30.0
+    kind: Annotated[
+        Literal["video", "simulated"],
+        Meta(description="video: a file played in real time; simulated: a camera of a lesson that `kinebox simulate` rendered"),
+    ]
+    path: Annotated[str, Meta(min_length=1, description="the file, or the lesson's folder, relative to the data folder")]
+    rate_hz: Annotated[
+        float, Meta(gt=0, le=240, description="frames a second of a file; every frame is shown. A lesson has its own")
+    ] = 30.0
     shutter_delay_ms: Annotated[
-        float, Meta(ge=-1000, le=1000, description="how much later than the others this camera exposes")
+        float, Meta(ge=-1000, le=1000, description="how much later than the others this camera exposes. A lesson has its own")
     ] = 0.0
+
+    def __post_init__(self) -> None:
+        if self.kind == "simulated" and (self.rate_hz, self.shutter_delay_ms) != (30.0, 0.0):
+            raise ValueError(
+                "a simulated camera has its rate and delay from its lesson; leave out `rate_hz` and `shutter_delay_ms`"
+            )
 
 
 class BusConfig(Section, frozen=True):

@@ -1,8 +1,9 @@
 """Finding the parts of the box by their entry points, so that no part imports another.
 
-Three groups: `kinebox.processes` (a callable that takes a `ProcessContext` and returns when it shall stop), `kinebox.checks` (a
-callable `check(site, rig, data)` that raises `UserError` if its part could not work) and `kinebox.inspections` (see
-`models.inspection`). If several installed packages offer one of the same name, the first on the import path is taken.
+Four groups: `kinebox.processes` (a callable that takes a `ProcessContext` and returns when it shall stop), `kinebox.checks` (a
+callable `check(site, rig, data)` that raises `UserError` if its part could not work), `kinebox.inspections` (see
+`models.inspection`) and `kinebox.commands` (see `models.commands`). If several installed packages offer one of the same name, the
+first on the import path is taken.
 """
 
 import sys
@@ -10,6 +11,7 @@ from collections.abc import Callable
 from importlib.metadata import EntryPoint, entry_points
 from typing import cast
 
+from models.commands import Simulation
 from models.errors import UserError
 from models.inspection import Inspection
 from models.process import Check, ProcessContext
@@ -17,6 +19,7 @@ from models.process import Check, ProcessContext
 PROCESSES = "kinebox.processes"
 CHECKS = "kinebox.checks"
 INSPECTIONS = "kinebox.inspections"
+COMMANDS = "kinebox.commands"
 
 Process = Callable[[ProcessContext], None]
 
@@ -52,6 +55,18 @@ def load_checks() -> list[Check]:
 def load_inspections() -> list[Inspection]:
     """What the parts look at when a person wants to know what is wrong, by name."""
     return [cast(Inspection, entry.load()) for entry in _first_of_each_name(INSPECTIONS)]
+
+
+def load_simulation() -> Simulation:
+    """The part that renders simulated lessons.
+
+    Raises:
+        UserError: no installed part offers it.
+    """
+    for entry in entry_points(group=COMMANDS):
+        if entry.name == "simulate":
+            return cast(Simulation, entry.load())
+    raise UserError("no installed part renders lessons; run 'make setup'")
 
 
 def _first_of_each_name(group: str) -> list[EntryPoint]:

@@ -1,0 +1,133 @@
+"""A rendered lesson plays as it was recorded: its times, its faults, and over and over."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from edge.cameras.simulated import Recorded, open_simulated
+from edge.cameras.source import Frame
+from edge.check import check
+from edge.inspect import inspect
+from edge.simulation.files import PLAN_NAME, film_path
+from edge.simulation.plan import Plan, ShutterPlan, SwapPlan
+from edge.simulation.stage import rig_of
+from edge.simulation.world_faults import phase_s
+from models.config.site import SITE_VERSION, CameraConfig, FaultConfig, Site, decode_site
+from models.errors import UserError
+from tests.drawn_lesson import CAMERAS, PICTURES, draw_lesson, plan_with
+from tests.small_video import SIZE_PX
+
+SECOND_NS = 1_000_000_000
+START_NS = 7 * SECOND_NS
+
+
+@dataclass
+class VirtualClock:
+    t_ns: int = START_NS
+
+    def now_ns(self) -> int:
+        return self.t_ns
+
+    def sleep_until(self, t_ns: int) -> None:
+        self.t_ns = max(self.t_ns, t_ns)
+
+
+def played(folder: Path, plan: Plan, camera: str, seconds: float) -> list[Frame]:
+    draw_lesson(folder, plan)
+    clock, frames = VirtualClock(), list[Frame]()
+    source, _ = open_simulated(folder, camera, START_NS, clock)
+    while clock.t_ns < START_NS + seconds * SECOND_NS:
+        if (frame := source.grab(0.2)) is not None:
+            frames.append(frame)
+    return frames
+
+
+def level(frame: Frame) -> int:
+    return round(float(frame.image(8).mean()))
+
+
+def test_a_lesson_is_played_picture_by_picture_and_again_as_a_new_epoch(tmp_path: Path) -> None:
+    frames = played(tmp_path / "lesson", plan_with(), "cam02", 2.5)
+    numbers = [(frame.epoch, frame.index) for frame in frames[:75]]
+    assert numbers == [divmod(number, PICTURES) for number in range(75)]
+    assert all(0 <= frame.t_mid_ns - START_NS - k * SECOND_NS / 30 < 1 for k, frame in enumerate(frames))
+    assert [level(frame) for frame in frames[::10]][:6] == pytest.approx([40, 50, 60, 40, 50, 60], abs=2)
+
+
+def test_a_free_running_shutter_keeps_its_phase_over_all_loops(tmp_path: Path) -> None:
+    plan = plan_with(shutter=ShutterPlan(phases="free_running"))
+    frames = played(tmp_path / "lesson", plan, "cam03", 3.0)
+    phase_ns = phase_s(plan, "cam03") * SECOND_NS
+    assert phase_ns > 0
+    for k, frame in enumerate(frames):
+        assert frame.t_mid_ns - START_NS - k * SECOND_NS / 30 == pytest.approx(phase_ns, abs=2)
+
+
+def test_cameras_that_swap_show_one_anothers_pictures_at_one_anothers_times(tmp_path: Path) -> None:
+    plan = plan_with(swaps=[SwapPlan(cameras=("cam01", "cam03"), at_s=0.5)], shutter=ShutterPlan(phases="free_running"))
+    for number, frame in enumerate(played(tmp_path / "lesson", plan, "cam01", 0.95)):
+        t_s = (frame.t_mid_ns - START_NS) / SECOND_NS
+        device, k = ("cam01", 0) if t_s < 0.5 else ("cam03", 2)
+        index = round((t_s - phase_s(plan, device)) * 30)
+        assert t_s == pytest.approx(phase_s(plan, device) + index / 30, abs=1e-8)
+        assert level(frame) == pytest.approx(40 * k + index, abs=2), number
+
+
+def test_what_befalls_a_camera_on_its_way_befalls_it_in_every_loop(tmp_path: Path) -> None:
+    faults = [
+        FaultConfig(camera="cam01", kind="drop", at_s=0.2, for_s=0.2),
+        FaultConfig(camera="cam01", kind="dark", at_s=0.5, for_s=0.1),
+        FaultConfig(camera="cam01", kind="drift", at_s=0.0, for_s=1.0, ppm=1000.0),
+        FaultConfig(camera="cam02", kind="drop", at_s=0.0, for_s=1.0),
+    ]
+    frames = [frame for frame in played(tmp_path / "lesson", plan_with(faults=faults), "cam01", 2.0) if frame.epoch < 2]
+    for epoch in range(2):
+        seen = [frame for frame in frames if frame.epoch == epoch]
+        assert {frame.index for frame in seen} == set(range(PICTURES)) - set(range(6, 12))
+        for frame in seen:
+            since_ns = frame.index * SECOND_NS / 30
+            assert frame.t_mid_ns - START_NS - epoch * SECOND_NS - since_ns == pytest.approx(1e-3 * since_ns, abs=2)
+            assert (level(frame) == 0) == (frame.index in {0, 15, 16, 17})
+
+
+def test_times_of_a_lesson_are_asked_for_in_both_directions_and_agree() -> None:
+    recorded = Recorded(100, (3, 10, 25), 30)
+    times = [recorded.t_ns(number) for number in range(7)]
+    assert times == [103, 110, 125, 133, 140, 155, 163]
+    for now_ns in range(95, 165):
+        assert recorded.newest(now_ns) == sum(t_ns <= now_ns for t_ns in times) - 1
+
+
+def site_of(*names: str) -> Site:
+    cameras = [CameraConfig(name=name, kind="simulated", path="simulated/drawn") for name in names]
+    return Site(version=SITE_VERSION, name="s", calibration="rig.toml", cameras=cameras)
+
+
+@pytest.mark.parametrize(
+    ("harm", "said"),
+    [
+        (lambda folder: film_path(folder, "cam02").unlink(), r"camera 'cam02': .*cam02\.avi is missing"),
+        (lambda folder: film_path(folder, "cam02").write_bytes(b"x"), r"cam02\.avi has 1 bytes instead of .* `kinebox simulate`"),
+        (lambda folder: (folder / PLAN_NAME).unlink(), r"camera 'cam01': .*drawn is no rendered lesson.*`kinebox simulate`"),
+        (lambda folder: (folder / PLAN_NAME).write_text("version = 9\n"), r"plan\.toml: .*version 9"),
+    ],
+)
+def test_a_lesson_that_cannot_be_played_is_found_before_anything_is_started(
+    harm: Callable[[Path], object], said: str, tmp_path: Path
+) -> None:
+    folder = draw_lesson(tmp_path / "simulated/drawn", plan_with())
+    harm(folder)
+    site = site_of("cam01", "cam02")
+    with pytest.raises(UserError, match=said):
+        check(site, rig_of(plan_with(size_px=SIZE_PX)), tmp_path)
+    assert any(found.fault for found in inspect(site, None, tmp_path))
+
+
+def test_a_simulated_camera_has_its_rate_from_its_lesson() -> None:
+    head = 'version = 2\nname = "s"\ncalibration = "rig.toml"\n'
+    cameras = "".join(f'[[cameras]]\nname = "{name}"\nkind = "simulated"\npath = "l"\n' for name in CAMERAS)
+    assert {camera.kind for camera in decode_site((head + cameras).encode(), "s").cameras} == {"simulated"}
+    with pytest.raises(UserError, match=r"leave out `rate_hz`.*cameras\[2\]"):
+        decode_site((head + cameras + "rate_hz = 15.0\n").encode(), "s")
