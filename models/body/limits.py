@@ -3,7 +3,7 @@
 Axes are those of the T-pose (x to the front, y to the left, z up), so that on the left side:
 - arm: turning about x lowers (-) and raises (+) it, about z brings it forwards (-), about y twists it;
 - elbow: about z, bending is negative; leg: hip about y, flexion (thigh forwards) is negative; knee about y, bending is positive;
-- elbow about x: nothing alone, but a bent elbow whose forearm is turned (palm of a shooting hand under the ball) turns about x, too;
+- elbow about x: nothing alone, but a bent elbow whose forearm is turned (the palm under a ball) turns about x, too;
 - ankle about y: dorsiflexion (toes up) is negative; wrist: about x ulnar/radial deviation turns into z, flexion about x.
 The right side is its mirror image.
 

@@ -76,18 +76,20 @@ def limb_of(figure: Figure, side: str, kind: str) -> Limb:
     return Limb(root, hinge, figure.bones_m[hinge], figure.bones_m[end], axis, sense)
 
 
-def reach(limb: Limb, to_end_m: Float, hinge_axis: Float) -> tuple[Float, Float]:
+def reach(limb: Limb, to_end_m: Float, hinge_axis: Float, soft: bool = True) -> tuple[Float, Float]:
     """Turn a limb so that its end is where it is wanted, or in that direction if it is out of reach.
 
     Args:
         limb: arm or leg.
         to_end_m: (T, 3) from the root to the wanted end, in the world.
         hinge_axis: (T, 3) about which the hinge turns when it bends, in the world; what of it lies along `to_end_m` is left out.
+        soft: yield as `Limb.soft_span_m` does, rather than be pulled straight.
 
     Returns:
         (T, 3, 3) rotation of the root's segment in the world, (T,) bend of the hinge.
     """
-    bend = limb.bend_rad(limb.soft_span_m(np.linalg.norm(to_end_m, axis=-1)))
+    span = np.linalg.norm(to_end_m, axis=-1)
+    bend = limb.bend_rad(limb.soft_span_m(span) if soft else span)
     local_end = limb.upper_m + rotations.through(rotations.about(limb.axis, limb.sense * bend), limb.lower_m)
     local = rotations.frame(local_end, np.broadcast_to(limb.hinge_axis, local_end.shape))
     world = rotations.frame(to_end_m, hinge_axis)

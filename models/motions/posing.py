@@ -149,10 +149,29 @@ def legs(figure: Figure, values: Values, pelvis_m: Float, local: Float) -> dict[
         joints = [limb.root, limb.hinge, *(smpl.INDEX[f"{side}_{name}"] for name in ("ankle", "foot"))]
         target = _planted_leg(limb, held[side], hip, pelvis, np.radians(yaw), np.radians(yaw + OUT[side][1] * knee))
         share = np.broadcast_to(1.0 - hold[:, None], (len(hold), len(joints)))
-        local[:, joints] = np.where(
-            hold[:, None, None, None] >= 1.0, target, rotations.between(target, _free_leg(limb, side, values), share)
-        )
+        free = rotations.between(target, _free_leg(limb, side, values), share)
+        _clear(figure, side, limb, hip, pelvis, free)
+        local[:, joints] = np.where(hold[:, None, None, None] >= 1.0, target, free)
     return held
+
+
+def _clear(figure: Figure, side: str, limb: Limb, hip: Float, pelvis: Float, leg: Float) -> None:
+    """Bend (T, 4, 3, 3) legs, in place, as far as it takes to keep the foot out of the floor; the foot keeps its turn."""
+    thigh = pelvis @ leg[:, 0]
+    shank = thigh @ leg[:, 1]
+    foot = shank @ leg[:, 2]
+    ankle = hip + rotations.through(thigh, limb.upper_m) + rotations.through(shank, limb.lower_m)
+    toes = ankle + rotations.through(foot, figure.bones_m[smpl.INDEX[f"{side}_foot"]])
+    lowest = figure.soles[side].lowest_m(np.stack((ankle, toes), axis=1), np.stack((foot, foot @ leg[:, 3]), axis=1))
+    sunk = np.flatnonzero(lowest < 0)
+    if not len(sunk):
+        return
+    raised = ankle[sunk] - lowest[sunk, None] * np.array((0.0, 0.0, 1.0))
+    turned, bend = reach(limb, raised - hip[sunk], thigh[sunk, :, 1], soft=False)
+    knee = _bent(limb, bend)
+    leg[sunk, 0] = pelvis[sunk].swapaxes(-1, -2) @ turned
+    leg[sunk, 1] = knee
+    leg[sunk, 2] = (turned @ knee).swapaxes(-1, -2) @ foot[sunk]
 
 
 def _planted_leg(limb: Limb, foot: Footing, hip: Float, pelvis: Float, yaw_rad: Float, knee_rad: Float) -> Float:

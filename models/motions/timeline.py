@@ -123,6 +123,10 @@ class Timeline:
         """Both arms alike."""
         self.key(at_s, left_arm=both, right_arm=both)
 
+    def legs(self, at_s: float, both: Leg) -> None:
+        """Both legs alike."""
+        self.key(at_s, left_leg=both, right_leg=both)
+
     def step(
         self,
         side: Side,
@@ -224,11 +228,11 @@ class Timeline:
         self._set(at_s, "pelvis", np.array((*place, up)))
 
     def _move(self, step: _Step) -> None:
-        if any(other.side == step.side and other.land_s > step.lift_s for other in self._steps):
-            raise ValueError(f"the {step.side} foot lifts at {step.lift_s:.3f} s, but has not landed from its last step")
+        if any(o.side == step.side and o.lift_s < step.land_s and step.lift_s < o.land_s for o in self._steps):
+            raise ValueError(f"the {step.side} foot lifts at {step.lift_s:.3f} s, but is in the air for another step")
         if step.land_s <= step.lift_s:
             raise ValueError(f"the {step.side} foot would land at {step.land_s:.3f} s before it lifts at {step.lift_s:.3f} s")
-        self._steps.append(step)
+        self._steps = sorted([*self._steps, step], key=lambda other: other.lift_s)
 
     def _ordered(self, name: str) -> tuple[Float, Float]:
         return _in_order(self._knots[name])

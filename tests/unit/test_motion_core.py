@@ -75,7 +75,7 @@ def test_turns_survive_the_way_to_matrices_and_back_also_near_half_a_turn() -> N
 def test_a_foot_cannot_step_while_it_is_in_the_air() -> None:
     line = Timeline(some_pupil(10, "male", 1))
     line.step("left", 0.2, 0.6, (0.5, 0))
-    with pytest.raises(ValueError, match=r"left foot lifts at 0\.500 s, but has not landed"):
+    with pytest.raises(ValueError, match=r"left foot lifts at 0\.500 s, but is in the air"):
         line.step("left", 0.5, 0.8, (0.9, 0))
 
 

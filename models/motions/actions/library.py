@@ -2,9 +2,14 @@
 
 from typing import Final
 
-from models.motions.actions import badminton_clear, basketball_shot
+from models.motions.actions import badminton_clear, basketball_shot, soccer_kick, volleyball_spike
 from models.motions.actions.action import Action
 
-_ALL: Final[tuple[Action, ...]] = (basketball_shot.ACTION, badminton_clear.ACTION)
+_ALL: Final[tuple[Action, ...]] = (
+    basketball_shot.ACTION,
+    badminton_clear.ACTION,
+    volleyball_spike.ACTION,
+    soccer_kick.ACTION,
+)
 
 ACTIONS: Final[dict[str, Action]] = {action.name: action for action in _ALL}
