@@ -36,7 +36,12 @@ class RoomPainter:
         self._depths_program["near_far"] = (NEAR_M, FAR_M)
         self._depths = gl.vertex_array(self._depths_program, [])
         fine = _TILE_PX * _SAMPLES
-        self._tile = gl.framebuffer([gl.texture((fine, fine), 4, dtype="f4")], gl.depth_renderbuffer((fine, fine)))
+        self._fine = gl.texture((fine, fine), 4, dtype="f2")
+        self._fine_tile = gl.framebuffer([self._fine], gl.depth_renderbuffer((fine, fine)))
+        self._tile = gl.framebuffer([gl.texture((_TILE_PX, _TILE_PX), 4, dtype="f4")])
+        self._average_program = gl.program(shaders.WHOLE_VERTEX, shaders.AVERAGE_FRAGMENT)
+        self._average_program["samples"] = _SAMPLES
+        self._average = gl.vertex_array(self._average_program, [])
 
     def paint(self, lens: Lens) -> tuple[Float32, "moderngl.Texture"]:
         """(H, W, 3) linear light, and depths in metres along the axis in the four samples of each pixel."""
@@ -70,15 +75,21 @@ class RoomPainter:
 
     def _light(self, lens: Lens, pieces: "list[tuple[Surface, moderngl.Texture | None, moderngl.VertexArray]]") -> Float32:
         width, height = lens.camera.size_px
-        light = np.empty((height, width, 3), np.float32)
+        light = np.zeros((height, width, 3), np.float32)
+        if not pieces:
+            return light
         for top in range(0, height, _TILE_PX):
             for left in range(0, width, _TILE_PX):
-                self._tile.use()
-                self._tile.clear()
+                self._fine_tile.use()
+                self._fine_tile.clear()
                 set_lens(self._program, lens, Box(left, top, left + _TILE_PX, top + _TILE_PX))
                 self._draw(pieces)
-                drawn = np.frombuffer(self._tile.read(components=3, dtype="f4"), np.float32)
-                drawn = drawn.reshape(_TILE_PX, _SAMPLES, _TILE_PX, _SAMPLES, 3).mean((1, 3))
+                self._tile.use()
+                self._gl.enable_only(self._gl.NOTHING)
+                self._fine.use(0)
+                self._average_program["fine"] = 0
+                self._average.render(vertices=3)
+                drawn = np.frombuffer(self._tile.read(components=3, dtype="f4"), np.float32).reshape(_TILE_PX, _TILE_PX, 3)
                 light[top : top + _TILE_PX, left : left + _TILE_PX] = drawn[: height - top, : width - left]
         return light
 

@@ -266,3 +266,19 @@ void main() {
 }
 """
 )
+
+AVERAGE_FRAGMENT: Final = (
+    VERSION
+    + """
+uniform sampler2D fine;
+uniform int samples; // across and down
+out vec4 mean;
+void main() {
+    ivec2 first = ivec2(gl_FragCoord.xy) * samples;
+    vec4 sum = vec4(0.0);
+    for (int row = 0; row < samples; ++row)
+        for (int column = 0; column < samples; ++column) sum += texelFetch(fine, first + ivec2(column, row), 0);
+    mean = sum / float(samples * samples);
+}
+"""
+)

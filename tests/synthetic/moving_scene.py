@@ -10,6 +10,7 @@ from models.arrays import Float
 from models.body.model import Body
 from models.body.pose import Pose
 from models.camera.pinhole import Camera
+from models.motions.motion import Motion
 from models.skeleton.smpl import INDEX
 from tests.bodies import body_model, someone
 
@@ -44,6 +45,32 @@ class Flinger:
         turns[INDEX["pelvis"]] = (0.0, 0.0, 0.8 * t_s)
         up = -float(self.body.rest_vertices_m[:, 2].min()) + 0.1 * swing**2
         return Pose(np.array((self.place_m[0] + 0.3 * swing, self.place_m[1], up)), turns)
+
+    def vertices_m(self, t_s: float) -> Float:
+        return self.body.vertices_m(self.pose(t_s))
+
+    def joints_m(self, t_s: float) -> Float:
+        return self.body.joints_m(self.pose(t_s))
+
+    def coco_m(self, t_s: float) -> Float:
+        return self.body.coco_m(self.pose(t_s))
+
+
+@dataclass(frozen=True, eq=False)
+class Moved:
+    """A pupil without clothes who performs a motion and keeps still before and after it."""
+
+    body: Body
+    motion: Motion
+    name: str = "M"
+
+    @property
+    def surface(self) -> Surface:
+        skin = self.body.rest_vertices_m
+        return Surface(self.name, skin, self.body.model.faces.astype(np.int32), np.full((len(skin), 3), 0.6))
+
+    def pose(self, t_s: float) -> Pose:
+        return self.motion.pose_at(min(max(t_s, 0.0), self.motion.duration_s))
 
     def vertices_m(self, t_s: float) -> Float:
         return self.body.vertices_m(self.pose(t_s))
