@@ -16,7 +16,7 @@ from edge.simulation.stage import rig_of
 from edge.simulation.world_faults import phase_s
 from models.config.site import SITE_VERSION, CameraConfig, FaultConfig, Site, decode_site
 from models.errors import UserError
-from tests.drawn_lesson import CAMERAS, PICTURES, draw_lesson, plan_with
+from tests.lesson_folder import CAMERAS, PICTURES, draw_lesson, plan_with
 from tests.small_video import SIZE_PX
 
 SECOND_NS = 1_000_000_000

@@ -17,7 +17,7 @@ from edge.simulation.world_faults import (
     shown_by,
 )
 from models.config.site import FaultConfig
-from tests.drawn_lesson import plan_with
+from tests.lesson_folder import plan_with
 
 FREE = plan_with(shutter=ShutterPlan(phases="free_running"))
 
