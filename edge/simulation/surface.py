@@ -31,7 +31,7 @@ class Surface:
         name: for error messages and masks.
         vertices_m: (V, 3).
         faces: (F, 3) indices, counter-clockwise seen from outside.
-        colours: (V, 3) sRGB, 0 to 1; multiplied with the texture where there is one.
+        colours: (V, 3) sRGB, 0 to 1, more for what shines by itself; multiplied with the texture where there is one.
         gloss: 0 dull to 1 polished, for the highlights of the lamps.
         texture: None is plain colours.
     """
