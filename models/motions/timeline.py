@@ -28,6 +28,9 @@ Side = Literal["left", "right"]
 
 SOFT_S: Final = 0.012
 """Deviation of the Gaussian that rounds the corners of words."""
+_HANGING_DEG: Final = 25.0
+"""Pitch of a foot in the middle of a step."""
+_TINY_S: Final = 1e-6
 _YIELD_S: Final = 0.09
 """How long a foot takes from being held to being free, and back."""
 
@@ -152,10 +155,12 @@ class Timeline:
         """
         side, place = self.side(side), (place[0], place[1] * self.across[1])
         self._move(_Step(side, snapped(lift_s), snapped(land_s), place, yaw, height))
-        if pitch or flat_s:
-            self._set(land_s, f"{side}_foot.pitch", pitch)
+        pitches = self._knots[f"{side}_foot.pitch"]
+        if not any(lift_s - 0.15 < at_s <= lift_s for at_s in pitches):
+            self._set(lift_s, f"{side}_foot.pitch", 0.0)
+        self._set(land_s, f"{side}_foot.pitch", pitch)
+        if pitch:
             self._set(land_s + flat_s, f"{side}_foot.pitch", 0.0)
-        self._set((lift_s + land_s) / 2, f"{side}_foot.pitch", 25.0)
 
     def swing(
         self,
@@ -183,7 +188,7 @@ class Timeline:
 
     def knee(self, at_s: float, side: Side, degrees: float) -> None:
         """The knee over a held foot points so far beside the toes: outwards, or inwards (below 0)."""
-        self._set(at_s, f"{side}_foot.knee", degrees)
+        self._set(at_s, f"{self.side(side)}_foot.knee", degrees)
 
     def flight(self, off_s: float, on_s: float) -> None:
         """Nothing touches the floor in between; both times need a key of the pelvis."""
@@ -245,23 +250,28 @@ class Timeline:
                 if not name.endswith(("_foot.hold", "_foot.place", "_foot.yaw")):
                     values[name] = splines.softened(value, SOFT_S * RATE_HZ)
         for side in posing.SIDES:
-            values[f"{side}_foot.place"], values[f"{side}_foot.yaw"] = self._footprints(side, at_s)
+            place, yaw, pitch = self._footprints(side, at_s)
+            values[f"{side}_foot.place"], values[f"{side}_foot.yaw"] = place, yaw
+            values[f"{side}_foot.pitch"] += pitch
         return values
 
-    def _footprints(self, side: str, at_s: Float) -> tuple[Float, Float]:
-        """(T, 3) footprints, the sole's height as z, and (T,) yaw in degrees."""
+    def _footprints(self, side: str, at_s: Float) -> tuple[Float, Float, Float]:
+        """(T, 3) footprints, the sole's height as z, (T,) yaw and (T,) how far the toes hang in a step, in degrees."""
         home, out = self._home[f"{side}_foot.place"], 1.0 if side == "left" else -1.0
         place, yaw = np.tile(home, (len(at_s), 1)), np.full(len(at_s), float(self._home[f"{side}_foot.yaw"]))
+        pitch = np.zeros(len(at_s))
         for step in self._steps:
             if step.side != side:
                 continue
             share = (at_s - step.lift_s) / (step.land_s - step.lift_s)
             gone = splines.minimum_jerk(share)
             target = home + self.leg_m * np.array((*step.place, 0.0))
+            bump = np.sin(np.pi * np.clip(share, 0, 1)) ** 2
             place[:, :2] += gone[:, None] * (target - place)[:, :2]
-            place[:, 2] += self.leg_m * step.height * np.sin(np.pi * np.clip(share, 0, 1)) ** 2
+            place[:, 2] += self.leg_m * step.height * bump
             yaw += gone * (out * step.yaw_deg - yaw)
-        return place, yaw
+            pitch += _HANGING_DEG * bump
+        return place, yaw, pitch
 
     def _posed(self, values: dict[str, Float], at_s: Float) -> Float:
         guides = []
@@ -295,8 +305,13 @@ class Timeline:
         return int(found[0])
 
     def poses(self, end_s: float) -> Poses:
-        """Sample from 0 to `end_s`, rounded up to a whole sample."""
+        """Sample from 0 to `end_s`, rounded up to a whole sample.
+
+        Raises:
+            ValueError: both feet are in the air without a flight, or a flight has no keys of the pelvis at its ends.
+        """
         times = np.arange(int(np.ceil(end_s * RATE_HZ - 1e-6)) + 1) / RATE_HZ
+        self._check_airborne(times)
         values = self._sampled(times, even=True)
         local = self._posed(values, times)
         pelvis = balanced(
@@ -307,6 +322,14 @@ class Timeline:
         )
         return Poses(times, pelvis, local)
 
+    def _check_airborne(self, times_s: Float) -> None:
+        flying = np.zeros(len(times_s), bool)
+        for off_s, on_s in self._flights:
+            flying |= (times_s > off_s) & (times_s < on_s)
+        lost = np.flatnonzero(~self.contacts(times_s).any(1) & ~flying)
+        if len(lost):
+            raise ValueError(f"both feet are in the air at {times_s[lost[0]]:.3f} s, but no flight is said")
+
     def contacts(self, times_s: Float) -> Bool:
         """(T, 5) feet that are not in a step; nothing else bears."""
         contacts = np.zeros((len(times_s), len(CONTACTS)), bool)
@@ -314,7 +337,7 @@ class Timeline:
             contacts[:, number] = True
             for step in self._steps:
                 if step.side == side:
-                    contacts[(times_s > step.lift_s) & (times_s < step.land_s), number] = False
+                    contacts[(times_s > step.lift_s + _TINY_S) & (times_s < step.land_s - _TINY_S), number] = False
         return contacts
 
     def motion(self, end_s: float, attempts: tuple[Attempt, ...] = (), things: tuple[Thing, ...] = ()) -> Motion:

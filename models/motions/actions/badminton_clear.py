@@ -62,15 +62,16 @@ def perform(performance: Performance, subject: Subject) -> Motion:
 def _feet(line: Timeline, times: tuple[float, ...], turn: float, amplitude: float) -> None:
     start, back, drive, hit, through, rested, end = times
     stride = 0.5 * amplitude
-    line.step("right", start, back - 0.06, (-stride, -0.08), yaw=7 + 62 * turn, height=0.07)
-    line.step("left", start + 0.12, back - 0.2, (0.08, 0.02), yaw=7 - 32 * turn, height=0.05)
+    turned = start + 0.58 * (back - start)
+    line.step("right", start, turned, (-stride, -0.08), yaw=7 + 62 * turn, height=0.07)
+    line.step("left", turned + 0.02, back - 0.02, (0.08, 0.02), yaw=7 - 32 * turn, height=0.04)
     line.step("right", drive + 0.06, through, (0.42 * amplitude, -0.04), yaw=20, height=0.1)
-    line.step("right", rested, rested + 0.38, (0.0, 0.0), yaw=7, height=0.06)
-    line.step("left", rested + 0.36, end - 0.08, (0.0, 0.0), yaw=7, height=0.05)
+    line.step("right", rested, rested + 0.54 * (end - rested), (0.0, 0.0), yaw=7, height=0.06)
+    line.step("left", rested + 0.56 * (end - rested), end - 0.04, (0.0, 0.0), yaw=7, height=0.05)
     line.pitch(hit, "left", 14.0)
     line.pitch(through, "left", 25.0)
     line.pitch(rested, "left", 12.0)
-    line.key(start, Body(at=(0.0, 0.0), height=1.0))
+    line.stand(start - 0.05)
     line.key(back, Body(at=(-0.36 * amplitude, -0.07), height=0.94))
     line.key(drive, Body(at=(-0.33 * amplitude, -0.06), height=0.93))
     line.key(hit, Body(at=(0.06, 0.05), height=1.01))

@@ -66,7 +66,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
 
 def _legs(line: Timeline, dip: float, high: float, times: tuple[float, ...]) -> None:
     catch, start, bottom, off, on, settled, end = times
-    line.key(0.1, Body(height=1.0))
+    line.stand(0.12)
     line.key(catch, Body(height=0.985, gaze=(0.0, 5.0)))
     line.key(start, Body(height=0.985, gaze=(0.0, -14.0)))
     line.key(bottom, Body(height=dip))
@@ -101,10 +101,10 @@ def _arms(line: Timeline, times: tuple[float, ...], faults: tuple[float, float, 
     up = 0.12 - 0.75 * low
     line.key(raised, right_arm=Arm((1.0, aside, up), (0.12, -0.2 * aside, 1.0), 105, 72, -62, 0, 12))
     line.key(snapped(raised + 0.08), right_arm=Arm(wrist=-62))
-    line.key(release, right_arm=Arm((1.0, 0.8 * aside, 1.35 - 0.95 * low), (-0.6, -0.5, 0.8), 22, 42, -12, 0, 14))
+    line.key(release, right_arm=Arm((1.0, 0.8 * aside, 1.35 - 0.95 * low), (-0.3, -0.85, 0.5), 22, 26, -12, 0, 14))
     snap = release + 0.09
     wrist = 62 - 70 * min(pulled, 1.3)
-    line.key(snap, right_arm=Arm((1.0, 0.6 * aside, 1.5 - 1.0 * low), (-0.6, -0.5, 0.8), 12 + 30 * pulled, 42, wrist, 0, 22))
+    line.key(snap, right_arm=Arm((1.0, 0.6 * aside, 1.5 - 1.0 * low), (-0.35, -0.8, 0.6), 12 + 30 * pulled, 28, wrist, 0, 22))
     held_s = 0.34 * max(1.0 - pulled, 0.0)
     if pulled:
         line.key(
@@ -112,7 +112,7 @@ def _arms(line: Timeline, times: tuple[float, ...], faults: tuple[float, float, 
             right_arm=Arm((0.8, 0.2, 1.4 - 1.9 * min(pulled, 1.3)), (-0.3, -0.2, 1.0), 14 + 80 * min(pulled, 1.2), 60, 0, 0, 20),
         )
     line.key(
-        snap + 0.34, right_arm=Arm((1.0, 0.6 * aside, 1.4 - low), (-0.6, -0.5, 0.8), 16, 42, wrist, 0, 22) if not pulled else None
+        snap + 0.34, right_arm=Arm((1.0, 0.6 * aside, 1.4 - low), (-0.35, -0.8, 0.6), 16, 28, wrist, 0, 22) if not pulled else None
     )
     line.key(end - 0.45, right_arm=Arm((0.55, 0.2, -0.7), (0.6, -0.2, 1.0), 60, 40, 10, 0, 20))
     # The guide hand: on the ball's side, leaves it just before the release, and stays up.

@@ -61,11 +61,11 @@ def _run_up(line: Timeline, times: tuple[float, ...], performance: Performance) 
     line.step("left", start + 0.06, first, (0.42, 0.0), yaw=4, height=0.08, pitch=-10)
     line.step("right", first + 0.03, second, (0.9, -0.02), yaw=5, height=0.09, pitch=-8)
     line.step("left", second + 0.02, planted, (_SUPPORT - behind, 0.05), yaw=4, height=0.12, pitch=-8, flat_s=0.07)
-    line.step("left", landed - 0.02, landed + 0.4, (_END, 0.0), yaw=7, height=0.08)
-    line.step("right", landed + 0.42, end - 0.06, (_END, 0.0), yaw=7, height=0.05)
+    line.step("left", landed + 0.02, landed + 0.48 * (end - landed), (_END, 0.0), yaw=7, height=0.08)
+    line.step("right", landed + 0.5 * (end - landed), end - 0.04, (_END, 0.0), yaw=7, height=0.05)
     line.flight(off, planted)
     back = 0.6 * behind
-    line.key(start, Body(at=(0.0, 0.0), height=1.0, gaze=(-4, 22)))
+    line.stand(start - 0.05)
     line.key(first, Body(at=(0.3, 0.02), height=0.965, gaze=(-4, 28)))
     line.key(second, Body(at=(0.7, 0.01), height=0.955))
     line.key(off, Body(at=(0.93 - 0.3 * back, 0.02), height=0.975))
@@ -75,7 +75,7 @@ def _run_up(line: Timeline, times: tuple[float, ...], performance: Performance) 
     line.key(landed, Body(at=(1.78, -0.01), height=0.95, gaze=(0, 4)))
     line.pitch(hit, "left", 0.0)
     line.pitch(high, "left", 24.0)
-    line.pitch(landed - 0.06, "left", 24.0)
+    line.pitch(landed - 0.04, "left", 26.0)
 
 
 def _kicking_leg(line: Timeline, times: tuple[float, ...], performance: Performance) -> None:
@@ -96,9 +96,8 @@ def _kicking_leg(line: Timeline, times: tuple[float, ...], performance: Performa
 
 
 def _trunk(line: Timeline, times: tuple[float, ...], performance: Performance) -> None:
-    start, first, second, planted, hit, high, landed, _ = times
+    _, first, second, planted, hit, high, landed, _ = times
     lean = performance.severity("lean_back")
-    line.key(start, Body(tip=2, lean=0, facing=0, twist=0))
     line.key(first, Body(tip=7, lean=4, facing=4, twist=-6))
     line.key(second, Body(tip=8, lean=4, facing=-6, twist=6))
     line.key(planted, Body(tip=4 - 6 * lean, lean=2 - 12 * lean, facing=-22, twist=20, side=-5, bow=-2))

@@ -60,7 +60,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
     _approach(line, (start, first, second, third, bottom, off, on, settled, end), single)
     _flight(line, (off, top, on), single)
     _trunk(line, (first, second, bottom, off, hit, on, settled), behind)
-    _arms(line, (start, first, second, bottom, off, hit, on, settled), (forward, behind))
+    _arms(line, (first, second, bottom, off, hit, on, settled), (forward, behind))
     line.stand(end, (_LANDING, 0.0))
     poses = line.poses(end + 0.15)
     placed = line.figure.place_local(poses.pelvis_m, poses.local)
@@ -73,8 +73,8 @@ def _approach(line: Timeline, times: tuple[float, ...], single: float) -> None:
     line.step("left", start + 0.08, first, (0.5, 0.0), yaw=4, height=0.09, pitch=-12)
     line.step("right", first + 0.05, second, (1.16, -0.04), yaw=14, height=0.1, pitch=-14)
     line.step("left", second + 0.01, third, (1.27, 0.06), yaw=-14, height=0.07, pitch=6, flat_s=0.08)
-    line.key(start, Body(at=(0.0, 0.0), height=1.0, gaze=(8, -10)))
-    line.key(first, Body(at=(0.36, 0.02), height=0.96))
+    line.stand(start - 0.05)
+    line.key(first, Body(at=(0.36, 0.02), height=0.96, gaze=(8, -16)))
     line.key(second, Body(at=(0.84, 0.0), height=0.89, gaze=(6, -26)))
     line.key(third, Body(at=(1.08, 0.0), height=0.84))
     line.key(bottom, Body(at=(1.14, 0.0), height=_DIP))
@@ -110,9 +110,8 @@ def _trunk(line: Timeline, times: tuple[float, ...], behind: float) -> None:
 
 
 def _arms(line: Timeline, times: tuple[float, ...], faults: tuple[float, float]) -> None:
-    start, first, second, bottom, off, hit, on, settled = times
+    first, second, bottom, off, hit, on, settled = times
     forward, behind = faults
-    line.arms(start, Arm((0.02, 0.17, -1.0), bend=20))
     line.arms(first, Arm((0.35, 0.15, -1.0), (1.0, -0.3, 0.3), 35, 15, 0, 0, 15))
     line.arms(second - 0.06, Arm((-0.75, 0.28, -0.65), (1.0, -0.2, -0.2), 14, 20, 0, 0, 12))
     line.arms(second + 0.03, Arm((-0.7, 0.28, -0.7), (1.0, -0.2, -0.2), 14, 20, 0, 0, 12))
