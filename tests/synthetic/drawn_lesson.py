@@ -121,13 +121,13 @@ def drawn_lesson(
         frames=lambda names: _frames(rig, times, names, truth_m),
         truth_m=truth_m,
         stature_m=who.height_m,
-        pictures={camera.name: _truth(rig, camera.name, truth_m(times[camera.name])) for camera in rig},
+        pictures={camera.name: _truth(rig, camera.name, times[camera.name], truth_m(times[camera.name])) for camera in rig},
     )
 
 
-def _truth(rig: Rig, name: str, points_m: Float) -> PictureTruth:
+def _truth(rig: Rig, name: str, times_s: Float, points_m: Float) -> PictureTruth:
     points_px = rig.cameras[rig.index(name)].project(points_m)
-    return PictureTruth(points_m, points_px, np.ones(points_px.shape[:2], np.bool_))
+    return PictureTruth(times_s, points_m, points_px, np.ones(points_px.shape[:2], np.bool_))
 
 
 def _frames(rig: Rig, times: dict[str, Float], names: Sequence[str], truth_m: Callable[[Float], Float]) -> Iterator[DrawnFrame]:

@@ -248,6 +248,7 @@ def test_the_bound_of_two_cameras_at_right_angles_has_a_closed_form() -> None:
     assert np.isnan(triangulation_bound_m(twice, np.zeros(3), np.ones(2), np.ones(2, np.bool_))), "both look along one line"
 
 
+@pytest.mark.slow
 def test_the_bound_is_what_the_best_estimator_of_a_point_reaches() -> None:
     rig, point = ring_rig(4), np.array((0.3, -0.2, 1.1))
     sigmas = np.array((1.0, 2.0, 3.0, 1.5))

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+import pytest
 
 from edge.cameras.video import Schedule
 from models.arrays import UInt8
@@ -13,6 +14,8 @@ from services.fusion.pipeline import Tick
 from tests.bench.closed_loop import Event, Pace, watch
 from tests.fake_networks import fake_networks
 from tests.synthetic.gym import ring_rig
+
+pytestmark = pytest.mark.slow
 
 RIG = ring_rig(4)
 START_NS = 1_000_000_000

@@ -21,6 +21,8 @@ from tests.bench.datasets.track import between_samples
 from tests.synthetic.gym import ring_rig
 from tests.synthetic.person import Person
 
+pytestmark = pytest.mark.slow
+
 RIG = ring_rig(4, distorted=True)
 SIZE = (64, 48)
 COUNT = 30

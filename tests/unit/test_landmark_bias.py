@@ -127,6 +127,7 @@ def fused(gym: Gym, config: FusionConfig) -> list[Motion]:
     return motions
 
 
+@pytest.mark.slow
 def test_fusion_takes_the_bias_off_what_it_gives_out_and_off_nothing_that_it_fuses() -> None:
     bias = drawn_bias()
     gym = Gym(seconds=1.0, noise_px=0.5, tail=0.0, occlusion=0.0, swap=0.0, distractor=0.0)

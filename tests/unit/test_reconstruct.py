@@ -17,6 +17,8 @@ from tests.bench.reconstruct.lesson import Lesson, Span
 from tests.bench.reconstruct.observed import DELAY_NS, Looking, Observed, look, observed
 from tests.synthetic.drawn_lesson import DotDetector, DotPose, dot_networks, drawn_lesson
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def lesson() -> Lesson:

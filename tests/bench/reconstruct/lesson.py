@@ -29,11 +29,13 @@ class PictureTruth:
     """What is true in each picture of one camera.
 
     Attributes:
+        times_s: (n,) mid-exposures, from the lesson's beginning.
         points_m: (n, 17, 3) COCO points in the world, each as its row was exposed.
         points_px: (n, 17, 2) where they are in the picture, distorted.
         visible: (n, 17) whether nothing hides the point from the camera; a point outside the picture is not visible.
     """
 
+    times_s: Float
     points_m: Float
     points_px: Float
     visible: Bool

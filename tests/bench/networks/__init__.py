@@ -1,0 +1,1 @@
+"""How well the pose networks see simulated pupils: `make bench-networks`."""

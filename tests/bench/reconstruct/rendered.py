@@ -1,0 +1,104 @@
+"""Rendered lessons as lessons with known truth: rendered if they are not there yet, and found again by their content."""
+
+import heapq
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from edge.cameras.jpeg import JpegFrame
+from edge.cameras.video import Video, load_video
+from edge.footage.index import Index
+from edge.simulation import truth_file
+from edge.simulation.avatar import Avatar
+from edge.simulation.files import RIG_NAME, TRUTH_NAME, film_path
+from edge.simulation.plan import Plan
+from edge.simulation.render_lesson import folder_of, render_lesson
+from edge.simulation.stage import set_stage
+from edge.simulation.truth import Truth
+from models.arrays import Float
+from models.camera.rig import decode_rig
+from models.errors import UserError
+from models.skeleton import coco
+from tests.bench.reconstruct.lesson import START_NS, Lesson, PictureTruth, Span
+
+_SHOWN_EVERY_S = 5.0
+
+
+def render_all(plans: Sequence[Plan], data: Path) -> None:
+    """Render what is missing, telling how far it is.
+
+    Raises:
+        UserError: as `render_lesson`.
+    """
+    for number, plan in enumerate(plans, 1):
+        shown_s = time.monotonic()
+
+        def tell(done: int, total: int, left_s: float | None, title: str = f"{plan.name} ({number} of {len(plans)})") -> None:
+            nonlocal shown_s
+            if left_s is not None and time.monotonic() - shown_s >= _SHOWN_EVERY_S:
+                shown_s = time.monotonic()
+                sys.stderr.write(f"rendering {title}: {100 * done / total:.0f} %, {left_s / 60:.1f} min left\n")
+
+        render_lesson(plan, folder_of(plan, data), tell)
+
+
+def rendered_lesson(plan: Plan, data: Path) -> Lesson:
+    """A lesson that was rendered.
+
+    Raises:
+        UserError: it is not there, or not whole.
+    """
+    folder = folder_of(plan, data)
+    index = Index.read(folder)
+    if index is None:
+        raise UserError(f"{folder} holds no rendered lesson; render it first")
+    stage = set_stage(plan)
+    pupil = stage.scene.pupils[0]
+    if not isinstance(pupil, Avatar):
+        raise TypeError("only of an avatar is known what it does")
+    truth = truth_file.read(folder / TRUTH_NAME)
+    rig = decode_rig((folder / RIG_NAME).read_bytes(), str(folder / RIG_NAME))
+    videos = {name: load_video(film_path(folder, name), name) for name in rig.names}
+    times_ns = {name: _times_ns(truth.cameras[name].times_s) for name in rig.names}
+
+    def frames(cameras: Sequence[str]) -> Iterator[JpegFrame]:
+        return iter(heapq.merge(*(_frames(videos[name], times_ns[name]) for name in cameras), key=lambda frame: frame.t_mid_ns))
+
+    def truth_m(times_s: Float) -> Float:
+        return np.stack([pupil.coco_m(float(t))[: coco.COUNT] for t in times_s])
+
+    return Lesson(
+        name=plan.name,
+        seed=plan.seed,
+        pupil=f"{plan.split} {plan.seed}",
+        identity=index.recipe,
+        rig=rig,
+        length_s=stage.length_s,
+        spans=tuple(Span(attempt.action, attempt.start_s, attempt.end_s) for attempt in pupil.motion.attempts),
+        frames=frames,
+        truth_m=truth_m,
+        stature_m=pupil.body.stature_m,
+        pictures={name: _pictures(truth.cameras[name]) for name in rig.names},
+    )
+
+
+def _pictures(truth: Truth) -> PictureTruth:
+    body = slice(0, coco.COUNT)
+    return PictureTruth(
+        truth.times_s,
+        truth.coco_exposed_m[:, 0, body].astype(np.float64),
+        truth.coco_px[:, 0, body].astype(np.float64),
+        truth.coco_visible[:, 0, body],
+    )
+
+
+def _times_ns(times_s: Float) -> list[int]:
+    """Rounded up, as a camera's schedule does, but for what is only the last digit of a float."""
+    return [START_NS + int(t) for t in np.ceil(times_s * 1e9 - 0.01)]
+
+
+def _frames(video: Video, times_ns: Sequence[int]) -> Iterator[JpegFrame]:
+    return (video.frame(0, number, t_ns) for number, t_ns in enumerate(times_ns))
