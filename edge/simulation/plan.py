@@ -85,7 +85,7 @@ class ShutterPlan(Table, frozen=True, kw_only=True):
 class OccluderPlan(Table, frozen=True, kw_only=True):
     """Something that stands in the way."""
 
-    kind: Annotated[Literal["vaulting_box", "net", "bench"], Meta(description="what it is")]
+    kind: Annotated[Literal["vaulting_box", "bench", "mats", "volleyball_net", "badminton_net"], Meta(description="what it is")]
     place_m: Annotated[Place, Meta(description="where its middle is")]
     facing_deg: Annotated[Direction, Meta(description="how it is turned")] = 0.0
 

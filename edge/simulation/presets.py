@@ -3,18 +3,22 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
+from msgspec import UNSET
 
 from edge.simulation.files import SHIPPED
 from edge.simulation.plan import PLAN_VERSION, PerformancePlan, Plan, PupilPlan, ShutterPlan
 from edge.simulation.split import Split, generator
 from models.motions.performance import AMPLITUDE
 
-SIX_ACTIONS: Final = ("basketball_shot", "long_jump", "forward_roll", "badminton_clear", "volleyball_spike", "soccer_kick")
-SLOT_S: Final = 4.0
-_LEAD_S: Final = 0.4
+_START_M: Final = (-1.5, -0.8)
+_BACK_DEG: Final = 158.0
+SIX_ACTIONS: Final = ("volleyball_spike", "basketball_shot", "badminton_clear", "long_jump", "soccer_kick", "forward_roll")
+"""In the order in which a pupil performs them in the acting area: there along one side, then he turns, and back to the mat."""
+_TURNS_BEFORE: Final = "soccer_kick"
+_WAIT_S: Final = 0.5
 _TEMPO: Final = (0.85, 1.2)
 _LEFT_HANDED: Final = 0.15
 
@@ -29,26 +33,8 @@ class Preset:
 
 def six_actions() -> Plan:
     """The lesson that is shipped: a girl of twelve performs the six actions as the standards say, seen from four corners."""
-    return Plan(
-        version=PLAN_VERSION,
-        name=SHIPPED,
-        seed=1,
-        rig="corners",
-        length_s=SLOT_S * len(SIX_ACTIONS),
-        pupils=[
-            PupilPlan(
-                name="pupil",
-                age_years=12.0,
-                sex="female",
-                performs=[PerformancePlan(action=name, begins_s=begins_s(number)) for number, name in enumerate(SIX_ACTIONS)],
-            )
-        ],
-    )
-
-
-def begins_s(number: int) -> float:
-    """When the `number`th action of a lesson begins that has one every `SLOT_S`."""
-    return _LEAD_S + SLOT_S * number
+    performs = [_performs(action) for action in SIX_ACTIONS]
+    return _lesson(SHIPPED, 1, PupilPlan(name="pupil", age_years=12.0, sex="female", place_m=_START_M, performs=performs))
 
 
 def acceptance(
@@ -65,39 +51,31 @@ def acceptance(
     random = generator(split, "acceptance", seed)
     handed: Literal["right", "left"] = "left" if random.uniform() < _LEFT_HANDED else "right"
     performs = [
-        PerformancePlan(
-            action=name,
+        _performs(
+            action,
             handed=handed,
             tempo=_round(random.uniform(*_TEMPO)),
             amplitude=_round(random.uniform(AMPLITUDE[0] + 0.1, AMPLITUDE[1] - 0.1)),
             skill=_round(random.uniform(0.3, 1.0)),
-            begins_s=begins_s(number),
         )
-        for number, name in enumerate(SIX_ACTIONS)
+        for action in SIX_ACTIONS
     ]
-    return Plan(
-        version=PLAN_VERSION,
-        name=f"acceptance-{split}-{rig}-{seed}".replace("_", "-")[:32],
-        seed=seed,
-        split=split,
-        rig=rig,
-        length_s=SLOT_S * len(SIX_ACTIONS),
-        shutter=ShutterPlan(phases=phases),
-        pupils=[PupilPlan(name="pupil", performs=performs)],
-    )
+    name = f"acceptance-{split}-{rig}-{seed}".replace("_", "-")[:32]
+    pupil = PupilPlan(name="pupil", place_m=_START_M, performs=performs)
+    return _lesson(name, seed, pupil, split=split, rig=rig, shutter=ShutterPlan(phases=phases))
+
+
+def _performs(action: str, **how: Any) -> PerformancePlan:
+    return PerformancePlan(action=action, wait_s=_WAIT_S, facing_deg=_BACK_DEG if action == _TURNS_BEFORE else UNSET, **how)
+
+
+def _lesson(name: str, seed: int, pupil: PupilPlan, **more: Any) -> Plan:
+    return Plan(version=PLAN_VERSION, name=name, seed=seed, pupils=[pupil], **more)
 
 
 def tiny(cameras: int = 2, length_s: float = 1.0) -> Plan:
     """A lesson for tests: a pupil who stands, small, short."""
-    return Plan(
-        version=PLAN_VERSION,
-        name="tiny",
-        seed=1,
-        cameras=cameras,
-        size_px=(320, 180),
-        length_s=length_s,
-        pupils=[PupilPlan(name="pupil")],
-    )
+    return _lesson("tiny", 1, PupilPlan(name="pupil"), cameras=cameras, size_px=(320, 180), length_s=length_s)
 
 
 def _round(value: float) -> float:
@@ -105,9 +83,7 @@ def _round(value: float) -> float:
 
 
 PRESETS: Final = {
-    SHIPPED: Preset(
-        "the six actions in 24 s, four cameras in the corners; the lesson that comes rendered with KineBox", six_actions
-    ),
+    SHIPPED: Preset("the six actions, four cameras in the corners; the lesson that comes rendered with KineBox", six_actions),
     "tiny": Preset("a second of a pupil who stands, two cameras, small pictures: to see whether this machine can render", tiny),
     **{
         f"acceptance_{seed}": Preset(

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -21,18 +22,33 @@ ABOUT_M = 0.6
 _SHORTEST_S = 2 / RATE_HZ
 
 
-def programme_of(plan: Plan, pupil: int, subject: Subject) -> Motion:
-    """The motion of pupil number `pupil`, from the lesson's beginning. Afterwards he stands as at its end.
+@dataclass(frozen=True, eq=False)
+class Programme:
+    """What a pupil does.
+
+    Attributes:
+        motion: from the lesson's beginning; afterwards he stands as at its end.
+        begins: where he stands and to where he looks as each performance of his plan begins.
+    """
+
+    motion: Motion
+    begins: tuple[Standpoint, ...]
+
+
+def programme_of(plan: Plan, pupil: int, subject: Subject) -> Programme:
+    """The programme of pupil number `pupil`.
 
     Raises:
         UserError: something shall begin before what is before it is over; the line names the key.
     """
     wanted = plan.pupils[pupil]
     start = Standpoint(*wanted.place_m, math.radians(wanted.facing_deg))
-    return Sequence(_Programme(plan, pupil, subject).acts(), start).motion()
+    director = _Director(plan, pupil, subject)
+    motion = Sequence(director.acts(), start).motion()
+    return Programme(motion, tuple(director.begins[number] for number in range(len(wanted.performs))))
 
 
-class _Programme:
+class _Director:
     """Hands out acts one by one, each when the length of the one before it is known."""
 
     def __init__(self, plan: Plan, pupil: int, subject: Subject) -> None:
@@ -40,6 +56,7 @@ class _Programme:
         self._pupil = pupil
         self._subject = subject
         self._now_s = 0.0
+        self.begins: dict[int, Standpoint] = {}
 
     def acts(self) -> Iterator[Act]:
         """In their order."""
@@ -82,7 +99,12 @@ class _Programme:
 
     def _perform(self, number: int) -> Act:
         performance = self._plan.performance(self._pupil, number)
-        return lambda _: perform(performance, self._subject)
+
+        def act(at: Standpoint) -> Motion:
+            self.begins[number] = at
+            return perform(performance, self._subject)
+
+        return act
 
     def _spend(self, what: Between) -> Act:
         return lambda at: spend(what, self._subject, at)
