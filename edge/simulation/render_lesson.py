@@ -35,7 +35,7 @@ from models.errors import UserError
 
 PROCESSES = 2
 PIECE_S = 0.5
-JPEG_QUALITY = 85
+JPEG_QUALITY = 80
 _SPARE_BYTES = 20_000_000
 _DIGITS = 12
 
