@@ -86,14 +86,23 @@ class _Pen:
 
     def arc(self, centre_m: tuple[float, float], radius_m: float, from_deg: float, to_deg: float, wide_m: float) -> None:
         """Part of a circle; `radius_m` to the middle of the line."""
-        angles = np.radians(np.linspace(from_deg, to_deg, max(int(abs(to_deg - from_deg) * radius_m / 2), 12)))
-        circle = np.stack((np.cos(angles), np.sin(angles)), -1)
-        inner, outer = (np.array(centre_m) + (radius_m + off) * circle for off in (-wide_m / 2, wide_m / 2))
-        cv2.fillPoly(self._canvas, [self._fixed(np.concatenate((inner, outer[::-1])))], 255, cv2.LINE_AA, _SHIFT)
+        reach = radius_m + wide_m
+        left, top = np.floor(self._pixels(np.array((centre_m[0] - reach, centre_m[1] + reach)))).astype(int).clip(0)
+        right, bottom = np.ceil(self._pixels(np.array((centre_m[0] + reach, centre_m[1] - reach)))).astype(int) + 1
+        window = self._canvas[top:bottom, left:right]
+        x0, y0 = self._pixels(np.asarray(centre_m))
+        x, y = np.arange(left, left + window.shape[1]) - x0, y0 - np.arange(top, top + window.shape[0])
+        off = np.abs(np.hypot(x[None], y[:, None]) - radius_m * PX_PER_M)
+        ink = np.clip(wide_m / 2 * PX_PER_M - off + 0.5, 0, 1)
+        angle = np.degrees(np.arctan2(y[:, None], x[None]))
+        ink[np.mod(angle - from_deg, 360) > to_deg - from_deg] = 0
+        np.maximum(window, np.round(255 * ink).astype(np.uint8), out=window)
 
     def _fixed(self, points_m: Float) -> np.ndarray:
-        pixels = (points_m - self._corner) * (PX_PER_M, -PX_PER_M) - 0.5
-        return np.asarray(np.round(pixels * 2**_SHIFT), np.int32)
+        return np.asarray(np.round(self._pixels(points_m) * 2**_SHIFT), np.int32)
+
+    def _pixels(self, points_m: Float) -> Float:
+        return np.asarray((points_m - self._corner) * (PX_PER_M, -PX_PER_M) - 0.5)
 
 
 def _basketball(pen: _Pen, court: Court) -> None:

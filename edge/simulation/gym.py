@@ -24,7 +24,7 @@ FREE_RADIUS_M: Final = 6.0
 _WHITE: Final = (0.92, 0.92, 0.90)
 _STEEL: Final = (0.62, 0.63, 0.65)
 _BEECH: Final = (0.80, 0.62, 0.40)
-_SHINES: Final = 1.35
+_SHINES: Final = 1.7
 """Colour of windows and lamps: brighter than white paper, so that a camera sees them burnt out."""
 _HUES: Final = 6
 

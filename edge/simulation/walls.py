@@ -73,14 +73,15 @@ def paint_ceiling(length_m: float, width_m: float, random: np.random.Generator) 
 
 def paint_sky(random: np.random.Generator) -> UInt8:
     """(H, W, 3) sRGB picture of what is behind a window: clouds above, tree tops below."""
-    height, width = 64, 96
+    height, width = 128, 192
     share = np.linspace(0, 1, height)[:, None, None]
-    clouds = cv2.GaussianBlur(random.standard_normal((height, width)), (0, 0), 9, sigmaY=4)
+    clouds = cv2.GaussianBlur(random.standard_normal((height, width)), (0, 0), 18, sigmaY=8)
     clouds = np.clip(0.5 + clouds / clouds.std() / 3, 0, 1)[..., None]
     sky = (1 - clouds) * np.array((0.72, 0.84, 0.97)) + clouds * np.array((0.97, 0.98, 0.99))
-    trees = cv2.GaussianBlur(random.standard_normal((1, width)), (0, 0), 5)[0]
+    trees = cv2.GaussianBlur(random.standard_normal((1, width)), (0, 0), 9)[0]
     edge = 0.86 + 0.05 * trees / trees.std()
-    return _bytes(np.where(share > edge[None, :, None], np.array((0.42, 0.52, 0.40)), sky))
+    trees_there = np.clip((share - edge[None, :, None]) * 40 + 0.5, 0, 1)
+    return _bytes((1 - trees_there) * sky + trees_there * np.array((0.42, 0.52, 0.40)))
 
 
 def _bricks(up: Float, along: Float, random: np.random.Generator) -> Float:
