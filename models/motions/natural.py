@@ -36,5 +36,9 @@ class Natural:
         """A duration, by tempo and deviating. Not for what gravity decides."""
         return standard_s / self._tempo * (1.0 + self._size * _PACE * float(self._normal(())))
 
+    def times(self, deviation: float) -> float:
+        """A factor around 1, its deviation at skill 0 as told: of a depth, a height, a distance."""
+        return 1.0 + self._size * deviation * float(self._normal(()))
+
     def _normal(self, shape: tuple[int, ...]) -> Float:
         return np.clip(self._generator.standard_normal(shape), -_MOST, _MOST)

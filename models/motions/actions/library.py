@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from models.motions.actions import badminton_clear, basketball_shot, soccer_kick, volleyball_spike
+from models.motions.actions import badminton_clear, basketball_shot, long_jump, soccer_kick, squat, star_jump, volleyball_spike
 from models.motions.actions.action import Action
 
 _ALL: Final[tuple[Action, ...]] = (
@@ -10,6 +10,9 @@ _ALL: Final[tuple[Action, ...]] = (
     badminton_clear.ACTION,
     volleyball_spike.ACTION,
     soccer_kick.ACTION,
+    long_jump.ACTION,
+    squat.ACTION,
+    star_jump.ACTION,
 )
 
 ACTIONS: Final[dict[str, Action]] = {action.name: action for action in _ALL}

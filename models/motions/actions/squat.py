@@ -1,0 +1,71 @@
+"""Squat: down until the thighs are level, arms to the front, heels down, and up again."""
+
+from typing import Final
+
+import numpy as np
+
+from models.motions.actions.action import Action, Fault
+from models.motions.motion import Attempt, Motion
+from models.motions.natural import Natural
+from models.motions.performance import Performance
+from models.motions.subject import Subject
+from models.motions.timeline import Side, Timeline, snapped
+from models.motions.vocabulary import Arm, Body
+
+FAULTS: Final = (
+    Fault("knees_in", "the knees fall in: their planes turn 30 degrees inwards"),
+    Fault("heels_up", "the heels leave the floor by 24 degrees of the foot"),
+    Fault("back_rounded", "the back is rounded by 42 degrees"),
+    Fault("trunk_forward", "the trunk tips 14 degrees further to the front"),
+    Fault("too_shallow", "the hips sink 30 % less"),
+)
+_STILL_S: Final = 0.3
+_SIDES: Final[tuple[Side, Side]] = ("left", "right")
+_DEPTH: Final = 0.50
+"""How far the pelvis sinks, of its height when standing: a knee bent to 110 degrees."""
+
+
+def perform(performance: Performance, subject: Subject) -> Motion:
+    """See `models.motions.perform.perform`."""
+    natural, severity = Natural(performance), performance.severity
+    knees_in, heels_up = severity("knees_in"), severity("heels_up")
+    rounded, forward, shallow = severity("back_rounded"), severity("trunk_forward"), severity("too_shallow")
+
+    depth = _DEPTH * performance.amplitude * natural.times(0.04) * (1 - 0.3 * shallow)
+    share = depth / _DEPTH
+    tip = (46 + 14 * forward) * share**0.7 - 14 * rounded
+    lean = 42 * rounded
+    begin = _STILL_S
+    bottom = snapped(begin + natural.seconds(1.0))
+    rise = bottom + natural.seconds(0.12)
+    end = snapped(rise + natural.seconds(0.9))
+
+    line = Timeline(subject, performance.handed, natural)
+    line.stand(begin)
+    back = -0.06 * share - 0.03 * forward + 0.05 * heels_up
+    low = Body(at=(back, 0.0), height=1 - depth, tip=tip, lean=lean, bow=0, gaze=(0, 8 + 25 * rounded))
+    for at_s in (bottom, rise):
+        line.key(at_s, low)
+        for side in _SIDES:
+            line.knee(at_s, side, 10 - 30 * knees_in)
+            line.pitch(at_s, side, 24 * heels_up)
+    for at_s in (begin, end):
+        for side in _SIDES:
+            line.knee(at_s, side, 0.0)
+            line.pitch(at_s, side, 0.0)
+    reach = _in_front(tip + lean)
+    line.arms(begin + 0.75 * (bottom - begin), reach)
+    line.arms(rise + 0.3 * (end - rise), reach)
+    line.stand(end)
+    starts_down = snapped(begin + 0.3 * (bottom - begin))
+    attempt = Attempt("squat", performance.handed, begin, starts_down, bottom, end, tuple(performance.faults.items()))
+    return line.motion(end + _STILL_S, (attempt,))
+
+
+def _in_front(trunk_deg: float) -> Arm:
+    """Level before the shoulders, whatever the trunk leans."""
+    up = np.radians(trunk_deg)
+    return Arm(upper=(float(np.cos(up)), 0.05, float(np.sin(up))), fore=(0.0, -0.6, 0.8), bend=6, turn=60)
+
+
+ACTION: Final = Action("squat", "Squat", FAULTS, perform)
