@@ -30,7 +30,8 @@ def write_video(path: Path, frames: int = 10, size_px: tuple[int, int] = SIZE_PX
     return path
 
 
-def video_of(pictures: list[UInt8], camera: str = "cam01") -> Video:
+def video_of(pictures: list[UInt8], camera: str = "cam01", quality: int = 90) -> Video:
     """Pictures as a loaded video."""
     height, width = pictures[0].shape[:2]
-    return Video(camera, (width, height), tuple(encode_jpeg(np.ascontiguousarray(picture[..., ::-1])) for picture in pictures))
+    jpegs = tuple(encode_jpeg(np.ascontiguousarray(picture[..., ::-1]), quality) for picture in pictures)
+    return Video(camera, (width, height), jpegs)

@@ -1,0 +1,1 @@
+"""What only the maintainers run: making the files of the simulated gym that are in the repository."""
