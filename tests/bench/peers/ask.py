@@ -11,13 +11,19 @@ from tests.bench.peers.answer import Answer, Keypoints
 PEERS = (pose2sim_project.NAME, aniposelib_group.NAME)
 
 
-def ask_peers(keypoints: list[Keypoints]) -> list[list[list[Answer]]]:
-    """Each peer's answers in all its settings to each clip."""
-    found = []
-    for ask in (pose2sim_project.run_pose2sim, aniposelib_group.run_aniposelib):
-        with tempfile.TemporaryDirectory() as folder:
-            found.append(ask(Path(folder), keypoints))
-    return found
+QUICK_FILTERS = ("butterworth", "gcv_spline")
+QUICK_SETTINGS = ("plain", "optim_library", "optim_anipose")
+"""Without RANSAC, which takes ten times as long as all else together."""
+
+
+def ask_peers(keypoints: list[Keypoints], *, quick: bool = False) -> list[list[list[Answer]]]:
+    """Each peer's answers to each clip, in all its settings, or quickly in its default and in the best of the others."""
+    with tempfile.TemporaryDirectory() as folder:
+        filters, swaps = (QUICK_FILTERS, [False]) if quick else (pose2sim_project.FILTERS, [False, True])
+        pose2sim = pose2sim_project.run_pose2sim(Path(folder), keypoints, filters, swaps)
+    with tempfile.TemporaryDirectory() as folder:
+        settings = QUICK_SETTINGS if quick else tuple(aniposelib_group.SETTINGS)
+        return [pose2sim, aniposelib_group.run_aniposelib(Path(folder), keypoints, settings)]
 
 
 def best_setting(peer: str, mpjpe_mm: Mapping[str, float]) -> str:

@@ -53,7 +53,6 @@ def figures_of(measured: Measured, suffix: str) -> dict[str, float]:
             "max_jump_mm",
             "peak_speed_bias_pct",
             "missing_pct",
-            "frames_without_pose",
         )
         for name in others:
             named |= {f"{name}{suffix}": mean.get(name), f"{name}.live{suffix}": means["live"].get(name)}
@@ -80,6 +79,11 @@ def rows_of(measured: Measured) -> list[dict[str, object]]:
         for action, figures in measured.smooth.items()
         if action != UPRIGHT_MEAN
     ]
+
+
+def lost(measured: Measured) -> int:
+    """Frames of all attempts in which the smooth motion has no pose."""
+    return sum(len(instants) for instants in measured.without_pose.values())
 
 
 def dataset_figures(measured: Iterable[Measured], suffix: str) -> dict[str, float]:
