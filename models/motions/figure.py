@@ -1,7 +1,7 @@
 """A subject as a figure of rigid segments: all poses of a motion at once. Joints, centre of mass and soles, without the skin."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -94,3 +94,9 @@ class Figure:
     def pose_centre_of_mass_m(self, pose: Pose) -> Float:
         """(3,) of one pose."""
         return np.asarray(self.centres_of_mass_m(self.place(pose.translation_m[None], pose.rotations_rad[None]))[0])
+
+
+@lru_cache(maxsize=32)
+def figure_of(subject: Subject) -> Figure:
+    """The figure of a subject, made once: what is measured on his skin takes longer than a motion."""
+    return Figure(subject)

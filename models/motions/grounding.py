@@ -7,6 +7,7 @@ import numpy as np
 
 from models.arrays import Bool, Float
 from models.body.limits import limits_rad
+from models.compiled import Counts
 from models.motions.figure import Figure
 from models.motions.inverse_kinematics import Limb, limb_of
 from models.motions.soles import PITCH_DEG, toes_rad
@@ -49,17 +50,18 @@ def footing(figure: Figure, side: str, hips_m: Float, places_m: Float, yaw_rad: 
     span = limb.soft_span_m(wanted)
     stiff = limits_rad(figure.subject.age_years)[smpl.INDEX[f"{side}_ankle"], 1, 0] + _SPARE_RAD
 
-    def raise_more(pitch: Float) -> Bool:
-        to_hip = hips_m - sole.ankles_at(places_m, yaw_rad, pitch)
-        return np.asarray((np.linalg.norm(to_hip, axis=-1) > span) | (_flexion_rad(limb, to_hip, yaw_rad) + pitch < stiff))
+    def raise_more(pitch: Float, of: Counts) -> Bool:
+        to_hip = hips_m[of] - sole.ankles_at(places_m[of], yaw_rad[of], pitch)
+        return np.asarray((np.linalg.norm(to_hip, axis=-1) > span[of]) | (_flexion_rad(limb, to_hip, yaw_rad[of]) + pitch < stiff))
 
-    low, high = pitch_rad.copy(), np.full(len(pitch_rad), np.radians(PITCH_DEG[1]))
-    short = raise_more(pitch_rad)
-    for _ in range(_HALVINGS):
+    short = np.flatnonzero(raise_more(pitch_rad, np.arange(len(pitch_rad))))
+    low, high = pitch_rad[short], np.full(len(short), np.radians(PITCH_DEG[1]))
+    for _ in range(_HALVINGS if len(short) else 0):
         middle = (low + high) / 2
-        more = raise_more(middle)
+        more = raise_more(middle, short)
         low, high = np.where(more, middle, low), np.where(more, high, middle)
-    raised = np.where(short, high, pitch_rad)
+    raised = pitch_rad.copy()
+    raised[short] = high
     return Footing(sole.ankles_at(places_m, yaw_rad, raised), raised, toes_rad(raised))
 
 

@@ -25,22 +25,32 @@ _SHARES: Final = np.array(((0.34, 0.39, 0.28), (0.33, 0.33, 0.36), (0.33, 0.28, 
 _NECK_SHARE: Final = 0.45
 _HEAD_RANGE_DEG: Final = np.array((40.0, 50.0, 70.0))
 """(side, lean, turn) that neck and head do together, well inside their limits."""
+_PALM_SHARE: Final = 0.8
+"""Of the way from the wrist to the fingers' roots, where the palm touches what it holds."""
+_TWIST_DEG: Final = 80.0
+_WRIST_RANGE_DEG: Final = np.array((75.0, 15.0, 32.0))
 _CHEST: Final = _SPINE[-1]
 
 
 @dataclass(frozen=True, eq=False)
 class Guide:
-    """A hand that stays with a point that is fixed to the other hand, as on a ball that both hold.
+    """A hand whose palm stays on a ball that the other hand carries. Vectors are in the other hand's frame.
 
     Attributes:
         side: the hand that follows.
-        offset_m: (T, 3) of its wrist from the other wrist, in the other hand's frame.
+        centre_m: (3,) of the ball from the other wrist.
+        gap_m: from the centre to the wrist's level, past the palm's thickness.
+        towards: (T, 3) from the centre to the palm.
+        fingers: (T, 3) to where the fingers point; what of it lies along `towards` is left out.
         weight: (T,) 1 follows, 0 goes by its own words.
         pole: (3,) to where its elbow points, in the chest's frame.
     """
 
     side: str
-    offset_m: Float
+    centre_m: Float
+    gap_m: float
+    towards: Float
+    fingers: Float
     weight: Float
     pole: Float
 
@@ -104,18 +114,37 @@ def _bent(limb: Limb, bend_rad: Float) -> Float:
 
 
 def _follow(figure: Figure, guide: Guide, local: Float) -> None:
-    """Turn one arm so that its wrist is at the guide's point; in the chest's frame, where the pelvis does not matter."""
+    """Turn one arm so that its palm is on the ball; in the chest's frame, where the pelvis does not matter."""
     other = "left" if guide.side == "right" else "right"
-    point, turn = _in_chest(figure, local, [smpl.INDEX[f"{other}_{name}"] for name in ("collar", "shoulder", "elbow", "wrist")])
-    point = point + rotations.through(turn, guide.offset_m)
-    collar = smpl.INDEX[f"{guide.side}_collar"]
+    ours, theirs = (
+        [smpl.INDEX[f"{side}_{name}"] for name in ("collar", "shoulder", "elbow", "wrist")] for side in (guide.side, other)
+    )
+    carrier, turn = _in_chest(figure, local, theirs)
+    # In the T-pose the left hand's fingers point along y and its palm looks down; the right hand's fingers point the other way.
+    out = OUT[guide.side][1]
+    axes = rotations.frame(guide.towards, out * guide.fingers)
+    hand = turn @ np.stack((np.cross(axes[..., 1], axes[..., 0]), axes[..., 1], axes[..., 0]), axis=-1)
+    palm = figure.bones_m[smpl.INDEX[f"{guide.side}_hand"]] * _PALM_SHARE
+    wrist = carrier + rotations.through(turn, guide.centre_m + guide.gap_m * axes[..., 0]) - rotations.through(hand, palm)
     limb = limb_of(figure, guide.side, "arm")
-    shoulder, _ = _in_chest(figure, local, [collar, limb.root])
-    to_end = point - shoulder
+    shoulder, _ = _in_chest(figure, local, ours[:2])
+    to_end = wrist - shoulder
     turned, bend = reach(limb, to_end, hinge_axis_of(to_end, np.broadcast_to(guide.pole, to_end.shape)))
-    wanted = local[:, collar].swapaxes(-1, -2) @ turned
-    local[:, limb.root] = rotations.between(local[:, limb.root], wanted, guide.weight)
-    local[:, limb.hinge] = rotations.between(local[:, limb.hinge], _bent(limb, bend), guide.weight)
+    elbow = _bent(limb, bend)
+    twist, rest = _hand_turns((turned @ elbow).swapaxes(-1, -2) @ hand)
+    wanted = (local[:, ours[0]].swapaxes(-1, -2) @ turned, elbow @ twist, rest)
+    for joint, there in zip(ours[1:], wanted, strict=True):
+        local[:, joint] = rotations.between(local[:, joint], there, guide.weight)
+
+
+def _hand_turns(hand: Float) -> tuple[Float, Float]:
+    """Share a (T, 3, 3) turn of the hand against the forearm between the forearm's own twist and the wrist, within their ranges."""
+    quaternion = rotations.quaternions(hand)
+    most = np.radians(_TWIST_DEG)
+    twist = rotations.about(1, most * np.tanh(2 * np.arctan2(quaternion[..., 2], quaternion[..., 0]) / most))
+    ranges = np.radians(_WRIST_RANGE_DEG)
+    rest = rotations.vectors(twist.swapaxes(-1, -2) @ hand)
+    return twist, rotations.matrices(ranges * np.tanh(rest / ranges))
 
 
 def _in_chest(figure: Figure, local: Float, chain: list[int]) -> tuple[Float, Float]:
@@ -146,12 +175,16 @@ def legs(figure: Figure, values: Values, pelvis_m: Float, local: Float) -> dict[
         hip = pelvis_m + rotations.through(pelvis, figure.bones_m[limb.root])
         place, yaw, pitch, hold, knee = (values[f"{side}_foot.{name}"] for name in ("place", "yaw", "pitch", "hold", "knee"))
         held[side] = footing(figure, side, hip, place, np.radians(yaw), np.radians(pitch))
-        joints = [limb.root, limb.hinge, *(smpl.INDEX[f"{side}_{name}"] for name in ("ankle", "foot"))]
+        joints = np.array([limb.root, limb.hinge, *(smpl.INDEX[f"{side}_{name}"] for name in ("ankle", "foot"))])
         target = _planted_leg(limb, held[side], hip, pelvis, np.radians(yaw), np.radians(yaw + OUT[side][1] * knee))
-        share = np.broadcast_to(1.0 - hold[:, None], (len(hold), len(joints)))
-        free = rotations.between(target, _free_leg(limb, side, values), share)
-        _clear(figure, side, limb, hip, pelvis, free)
-        local[:, joints] = np.where(hold[:, None, None, None] >= 1.0, target, free)
+        local[:, joints] = target
+        off = np.flatnonzero(hold < 1.0)
+        if len(off):
+            words = {name: value[off] for name, value in values.items() if name.startswith(f"{side}_leg.")}
+            share = np.broadcast_to(1.0 - hold[off, None], (len(off), len(joints)))
+            free = rotations.between(target[off], _free_leg(limb, side, words), share)
+            _clear(figure, side, limb, hip[off], pelvis[off], free)
+            local[np.ix_(off, joints)] = free
     return held
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from models.arrays import Float
 from models.body.pose import Pose
 from models.motions import posing, rotations
-from models.motions.figure import Figure
+from models.motions.figure import Figure, figure_of
 from models.motions.inverse_kinematics import STRAIGHT_DEG, limb_of
 from models.motions.subject import Subject
 from models.skeleton import smpl
@@ -33,7 +33,7 @@ _LEG: Final = {"thigh": (0.0, 0.0, -1.0), "bend": 12.0, "turn": TOES_OUT_DEG, "t
 
 def stand(subject: Subject) -> Pose:
     """Upright, looking along x, the pelvis over the origin, both soles on the floor."""
-    return stand_of(Figure(subject))
+    return stand_of(figure_of(subject))
 
 
 def stand_of(figure: Figure) -> Pose:

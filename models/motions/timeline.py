@@ -17,7 +17,7 @@ import numpy as np
 from models.arrays import Bool, Float
 from models.motions import posing, rotations, splines
 from models.motions.ballistics import GRAVITY_M_S2
-from models.motions.figure import Figure
+from models.motions.figure import figure_of
 from models.motions.grounding import balanced
 from models.motions.motion import CONTACTS, RATE_HZ, Attempt, Handed, Motion, Thing
 from models.motions.standing import standing_values
@@ -25,6 +25,7 @@ from models.motions.subject import Subject
 from models.motions.vocabulary import Arm, Body, Direction, Leg
 
 Side = Literal["left", "right"]
+Grip = tuple[Direction, Direction]
 
 SOFT_S: Final = 0.012
 """Deviation of the Gaussian that rounds the corners of words."""
@@ -52,6 +53,18 @@ class _Step:
     place: tuple[float, float]
     yaw_deg: float
     height: float
+    free: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class _Guide:
+    side: Side
+    pole: Float
+    centre_m: Float
+    gap_m: float
+    weights: dict[float, Float]
+    towards: dict[float, Float]
+    fingers: dict[float, Float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,14 +83,14 @@ class Timeline:
     """
 
     def __init__(self, subject: Subject, handed: Handed = "right", vary: Vary | None = None) -> None:
-        self.figure = Figure(subject)
+        self.figure = figure_of(subject)
         self._mirrored = handed == "left"
         self._vary = vary
         self._home = standing_values(self.figure)
         self._knots: dict[str, dict[float, Float]] = {name: {0.0: value} for name, value in self._home.items()}
         self._steps: list[_Step] = []
         self._flights: list[tuple[float, float]] = []
-        self._guides: list[tuple[Side, Float, dict[float, Float], dict[float, Float]]] = []
+        self._guides: list[_Guide] = []
 
     @property
     def leg_m(self) -> float:
@@ -140,23 +153,32 @@ class Timeline:
         height: float = 0.12,
         pitch: float = 0.0,
         flat_s: float = 0.12,
+        heel: float = 0.0,
+        heel_s: float = 0.16,
     ) -> None:
         """A foot goes from where it stands to a new footprint.
 
         Args:
             side: of the foot.
-            lift_s: its last contact; the heel rises before by itself, as far as the leg needs it.
+            lift_s: its last contact.
             land_s: its next contact.
             place: (front, left) against where this foot stood when the action began.
             yaw: of the toes, degrees, outwards.
             height: of the sole in the middle of the step.
             pitch: with which it lands, degrees: below 0 on the heel, above 0 on the toes.
             flat_s: from the landing until it stands flat.
+            heel: how far it has raised its heel when it lifts, degrees. More if the leg needs it; but a leg that is pulled straight
+                in a long stride jerks when it is let go, so a stride takes 30 to 45 here.
+            heel_s: how long before the lift the heel begins to rise.
         """
         side, place = self.side(side), (place[0], place[1] * self.across[1])
         self._move(_Step(side, snapped(lift_s), snapped(land_s), place, yaw, height))
         pitches = self._knots[f"{side}_foot.pitch"]
-        if not any(lift_s - 0.15 < at_s <= lift_s for at_s in pitches):
+        if heel:
+            since = max([lift_s - heel_s, *(at_s for at_s in pitches if at_s < lift_s)])
+            self._set(since, f"{side}_foot.pitch", float(pitches.get(snapped(since), np.zeros(()))))
+            self._set(lift_s, f"{side}_foot.pitch", heel)
+        elif not any(lift_s - 0.15 < at_s <= lift_s for at_s in pitches):
             self._set(lift_s, f"{side}_foot.pitch", 0.0)
         self._set(land_s, f"{side}_foot.pitch", pitch)
         if pitch:
@@ -174,7 +196,7 @@ class Timeline:
     ) -> None:
         """A foot leaves the floor, goes by the words of its leg (`Leg`), and lands. Arguments as `step`."""
         side, place = self.side(side), (place[0], place[1] * self.across[1])
-        self._move(_Step(side, snapped(lift_s), snapped(land_s), place, yaw, height=0.1))
+        self._move(_Step(side, snapped(lift_s), snapped(land_s), place, yaw, height=0.1, free=True))
         ease = min(_YIELD_S, 0.4 * (land_s - lift_s))
         for at_s, hold in ((lift_s, 1.0), (lift_s + ease, 0.0), (land_s - ease, 0.0), (land_s, 1.0)):
             self._set(at_s, f"{side}_foot.hold", hold)
@@ -194,19 +216,23 @@ class Timeline:
         """Nothing touches the floor in between; both times need a key of the pelvis."""
         self._flights.append((snapped(off_s), snapped(on_s)))
 
-    def guide(self, side: Side, pole: Direction, weights: dict[float, float], offsets_m: dict[float, Float]) -> None:
-        """A hand stays with a point near the other hand (see `posing.Guide`): weights and (3,) offsets at times.
+    def guide(
+        self, side: Side, pole: Direction, weights: dict[float, float], centre_m: Float, gap_m: float, grips: dict[float, Grip]
+    ) -> None:
+        """A hand lies on a ball that the other hand carries (see `posing.Guide`).
 
         Args:
             side: the hand that follows.
             pole: (front, out, up) where its elbow points, against the chest.
-            weights: 1 follows, 0 does not.
-            offsets_m: of its wrist from the other wrist, in the other hand's frame, for a right-handed person.
+            weights: at times, 1 follows, 0 does not.
+            centre_m: (3,) of the ball from the other wrist, in that hand's frame, for a right-handed person.
+            gap_m: of the palm's skeleton from the ball's centre.
+            grips: at times, from the centre to the palm, and the fingers' direction, in the same frame.
         """
         side = self.side(side)
-        offsets = {snapped(at_s): offset * self.across for at_s, offset in offsets_m.items()}
+        towards, fingers = ({snapped(at_s): np.array(grip[part]) * self.across for at_s, grip in grips.items()} for part in (0, 1))
         knots = {snapped(at_s): np.array(weight) for at_s, weight in weights.items()}
-        self._guides.append((side, np.array(pole) * posing.OUT[side], knots, offsets))
+        self._guides.append(_Guide(side, np.array(pole) * posing.OUT[side], centre_m * self.across, gap_m, knots, towards, fingers))
 
     def stand(self, at_s: float, at: tuple[float, float] = (0.0, 0.0)) -> None:
         """Back in `stand`, there; feet that are elsewhere must have stepped."""
@@ -264,7 +290,7 @@ class Timeline:
             if step.side != side:
                 continue
             share = (at_s - step.lift_s) / (step.land_s - step.lift_s)
-            gone = splines.minimum_jerk(share)
+            gone = _landing(share) if step.free else splines.minimum_jerk(share)
             target = home + self.leg_m * np.array((*step.place, 0.0))
             bump = np.sin(np.pi * np.clip(share, 0, 1)) ** 2
             place[:, :2] += gone[:, None] * (target - place)[:, :2]
@@ -275,9 +301,13 @@ class Timeline:
 
     def _posed(self, values: dict[str, Float], at_s: Float) -> Float:
         guides = []
-        for side, pole, weights, offsets in self._guides:
-            weight, offset = (splines.monotone(*_in_order(knots), at_s) for knots in (weights, offsets))
-            guides.append(posing.Guide(side, offset, weight, pole))
+        for guide in self._guides:
+            weight, towards, fingers = (
+                splines.monotone(*_in_order(knots), at_s) for knots in (guide.weights, guide.towards, guide.fingers)
+            )
+            guides.append(
+                posing.Guide(guide.side, guide.centre_m, guide.gap_m, rotations.unit(towards), fingers, weight, guide.pole)
+            )
         return posing.upper_body(self.figure, values, tuple(guides))
 
     def _centre_of_mass(self, at_s: Float) -> Float:
@@ -349,6 +379,12 @@ class Timeline:
         """Sampled poses as a motion."""
         turned = rotations.vectors(poses.local)
         return Motion(poses.pelvis_m, turned, self.contacts(poses.times_s), attempts, things)
+
+
+def _landing(share: Float) -> Float:
+    """From 0, still, to 1, arriving at an even pace, as a foot does whose body flies on over it."""
+    u = np.clip(share, 0.0, 1.0)
+    return np.asarray(u**2 * (2 - u))
 
 
 def _in_order(knots: dict[float, Float]) -> tuple[Float, Float]:

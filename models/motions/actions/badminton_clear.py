@@ -64,7 +64,7 @@ def _feet(line: Timeline, times: tuple[float, ...], turn: float, amplitude: floa
     stride = 0.5 * amplitude
     turned = start + 0.58 * (back - start)
     line.step("right", start, turned, (-stride, -0.08), yaw=7 + 62 * turn, height=0.07)
-    line.step("left", turned + 0.02, back - 0.02, (0.08, 0.02), yaw=7 - 32 * turn, height=0.04)
+    line.step("left", turned + 0.02, back - 0.02, (0.08, 0.02), yaw=7 - 34 * turn, height=0.04)
     line.step("right", drive + 0.06, through, (0.42 * amplitude, -0.04), yaw=20, height=0.1)
     line.step("right", rested, rested + 0.54 * (end - rested), (0.0, 0.0), yaw=7, height=0.06)
     line.step("left", rested + 0.56 * (end - rested), end - 0.04, (0.0, 0.0), yaw=7, height=0.05)
@@ -81,9 +81,9 @@ def _feet(line: Timeline, times: tuple[float, ...], turn: float, amplitude: floa
 
 def _trunk(line: Timeline, times: tuple[float, ...], turn: float, amplitude: float) -> None:
     back, drive, hit, through, rested = times
-    line.key(back, Body(facing=-62 * turn, twist=-17 * turn, lean=-5, bow=6, tip=-3, gaze=(0, -38)))
-    line.key(drive, Body(facing=-60 * turn, twist=-24 * turn, lean=-9 * amplitude, bow=9, tip=-3, gaze=(0, -42)))
-    line.key(drive + 0.5 * (hit - drive), Body(facing=-31 * turn, twist=-26 * turn))
+    line.key(back, Body(facing=-56 * turn, twist=-20 * turn, lean=-5, bow=6, tip=-3, gaze=(0, -38)))
+    line.key(drive, Body(facing=-54 * turn, twist=-27 * turn, lean=-9 * amplitude, bow=9, tip=-3, gaze=(0, -42)))
+    line.key(drive + 0.5 * (hit - drive), Body(facing=-30 * turn, twist=-27 * turn))
     line.key(hit - 0.06, Body(twist=-20 * turn))
     line.key(hit, Body(facing=6, twist=8, lean=0, bow=-12, tip=4, gaze=(2, -38)))
     line.key(through, Body(facing=17, twist=22, lean=14 * amplitude, bow=-4, tip=12, gaze=(0, -10)))
@@ -92,7 +92,7 @@ def _trunk(line: Timeline, times: tuple[float, ...], turn: float, amplitude: flo
 
 def _racket_arm(line: Timeline, times: tuple[float, ...], faults: tuple[float, float, float]) -> None:
     start, back, drive, hit, through, rested = times
-    low, stiff, stopped = faults
+    low, stiff, stopped = faults[0], faults[1], min(faults[2], 1.2)
     bent = max(1.0 - 0.66 * stiff, 0.03)
     ready = Arm((-0.3, 0.85, 0.05 + 0.1 * bent), (0.2, 0.0, 1.0), 92 * bent, -5, -15, 10, 70)
     line.key(start + 0.5 * (back - start), right_arm=Arm((0.25, 0.5, -0.7), (0.8, 0.0, 0.8), 80 * bent, 10, -10, 5, 70))

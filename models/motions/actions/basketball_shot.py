@@ -29,6 +29,8 @@ _BASKET_M: Final = np.array((3.4, 0.0, 2.6))
 """From the shooter; the height for the young."""
 _PASSER_M: Final = np.array((-4.2, 0.6, 1.1))
 _DIP: Final = 0.86
+_PALM_M: Final = 0.03
+"""From a ball's skin to the joints of the hand that holds it."""
 
 
 def perform(performance: Performance, subject: Subject) -> Motion:
@@ -105,36 +107,34 @@ def _arms(line: Timeline, times: tuple[float, ...], faults: tuple[float, float, 
     snap = release + 0.09
     wrist = 62 - 70 * min(pulled, 1.3)
     line.key(snap, right_arm=Arm((1.0, 0.6 * aside, 1.5 - 1.0 * low), (-0.35, -0.8, 0.6), 12 + 30 * pulled, 28, wrist, 0, 22))
-    held_s = 0.34 * max(1.0 - pulled, 0.0)
-    if pulled:
-        line.key(
-            snap + held_s + 0.22,
-            right_arm=Arm((0.8, 0.2, 1.4 - 1.9 * min(pulled, 1.3)), (-0.3, -0.2, 1.0), 14 + 80 * min(pulled, 1.2), 60, 0, 0, 20),
-        )
-    line.key(
-        snap + 0.34, right_arm=Arm((1.0, 0.6 * aside, 1.4 - low), (-0.35, -0.8, 0.6), 16, 28, wrist, 0, 22) if not pulled else None
-    )
-    line.key(end - 0.45, right_arm=Arm((0.55, 0.2, -0.7), (0.6, -0.2, 1.0), 60, 40, 10, 0, 20))
+    down = min(pulled, 1.3)
+    rest = snap + (settled - snap + 0.18) * (1.0 - 0.35 * down)
+    held_up = (1.0 - 0.3 * down, 0.6 * aside, 1.4 - low - (1.75 - low) * down)
+    bend = 16 + 70 * down
+    line.key(rest, right_arm=Arm(held_up, (-0.35 + 0.6 * down, -0.8 + 0.3 * down, 0.6), bend, 28, wrist * (1 - 0.7 * down), 0, 22))
+    line.key(rest + 0.5 * (end - rest), right_arm=Arm((0.55, 0.2, -0.7), (0.6, -0.2, 1.0), 60, 40, 10, 0, 20))
     # The guide hand: on the ball's side, leaves it just before the release, and stays up.
     line.key(raised, left_arm=Arm((0.85, 0.05, 0.05), (0.1, -0.25, 1.0), 95, -10, -10, 0, 8))
-    line.key(release, left_arm=Arm((0.8, 0.05, 0.75 - 0.9 * low), (0.0, -0.3, 1.0), 55, -10, -8, 0, 8))
+    line.key(release, left_arm=Arm((0.85, 0.3, 0.7 - 0.85 * low), (0.0, -0.45, 1.0), 55, -10, -8, 0, 8))
     line.key(settled, left_arm=Arm((0.75, 0.15, 0.2 - 0.4 * low), (0.1, -0.1, 1.0), 75, 0, 0, 0, 12))
-    reach = _ball_in_hand(line)
-    side = BASKETBALL_RADIUS_M + 0.025
-    opposite = reach + np.array((0.25 * side, -0.3 * reach[1], -0.97 * side))
-    beside = reach + np.array((0.9 * side, 0.35 * side, -0.1 * side))
     line.guide(
         "left",
         (0.1, 0.75, -1.0),
-        {0.2: 0.0, catch - 0.1: 0.5, catch: 1.0, raised: 1.0, release + 0.02: 0.0},
-        {catch: opposite, raised: beside},
+        {0.2: 0.0, catch - 0.1: 0.5, catch: 1.0, release - 0.05: 1.0, release + 0.06: 0.0},
+        _ball_in_hand(line),
+        BASKETBALL_RADIUS_M + _PALM_M,
+        {
+            catch: ((0.25, 0.0, -1.0), (0.0, -1.0, 0.0)),
+            low_point: ((0.6, 0.0, -0.8), (0.0, -1.0, -0.2)),
+            raised: ((1.0, 0.1, -0.1), (0.0, -0.8, -0.6)),
+        },
     )
 
 
 def _ball_in_hand(line: Timeline) -> Float:
     """(3,) centre of the ball from the right wrist, in the hand's frame: on the palm and the fingers."""
     hand = float(np.linalg.norm(line.figure.bones_m[smpl.INDEX["right_hand"]]))
-    return np.array((0.01, -0.95 * hand, -(BASKETBALL_RADIUS_M + 0.018)))
+    return np.array((0.01, -0.95 * hand, -(BASKETBALL_RADIUS_M + _PALM_M)))
 
 
 def _ball(line: Timeline, placed: Placed, times_s: Float, catch: float, release: float) -> Thing:

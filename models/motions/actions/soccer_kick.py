@@ -58,10 +58,10 @@ def _run_up(line: Timeline, times: tuple[float, ...], performance: Performance) 
     start, first, second, planted, hit, high, landed, end = times
     behind = 0.26 * performance.severity("support_foot_behind")
     off = planted - _LEAP_S
-    line.step("left", start + 0.06, first, (0.42, 0.0), yaw=4, height=0.08, pitch=-10)
-    line.step("right", first + 0.03, second, (0.9, -0.02), yaw=5, height=0.09, pitch=-8)
-    line.step("left", second + 0.02, planted, (_SUPPORT - behind, 0.05), yaw=4, height=0.12, pitch=-8, flat_s=0.07)
-    line.step("left", landed + 0.02, landed + 0.48 * (end - landed), (_END, 0.0), yaw=7, height=0.08)
+    line.step("left", start + 0.06, first, (0.42, 0.0), yaw=4, height=0.08, pitch=-10, heel=20)
+    line.step("right", first + 0.03, second, (0.9, -0.02), yaw=5, height=0.09, pitch=-8, heel=42)
+    line.step("left", second + 0.02, planted, (_SUPPORT - behind, 0.05), yaw=4, height=0.12, pitch=-8, flat_s=0.07, heel=44)
+    line.step("left", landed + 0.02, landed + 0.48 * (end - landed), (_END, 0.0), yaw=7, height=0.08, heel=40)
     line.step("right", landed + 0.5 * (end - landed), end - 0.04, (_END, 0.0), yaw=7, height=0.05)
     line.flight(off, planted)
     back = 0.6 * behind

@@ -70,9 +70,9 @@ def perform(performance: Performance, subject: Subject) -> Motion:
 
 def _approach(line: Timeline, times: tuple[float, ...], single: float) -> None:
     start, first, second, third, bottom, off, on, settled, end = times
-    line.step("left", start + 0.08, first, (0.5, 0.0), yaw=4, height=0.09, pitch=-12)
-    line.step("right", first + 0.05, second, (1.16, -0.04), yaw=14, height=0.1, pitch=-14)
-    line.step("left", second + 0.01, third, (1.27, 0.06), yaw=-14, height=0.07, pitch=6, flat_s=0.08)
+    line.step("left", start + 0.08, first, (0.5, 0.0), yaw=4, height=0.09, pitch=-12, heel=20)
+    line.step("right", first + 0.05, second, (1.16, -0.04), yaw=14, height=0.1, pitch=-14, heel=44)
+    line.step("left", second + 0.01, third, (1.27, 0.06), yaw=-14, height=0.07, pitch=6, flat_s=0.08, heel=46)
     line.stand(start - 0.05)
     line.key(first, Body(at=(0.36, 0.02), height=0.96, gaze=(8, -16)))
     line.key(second, Body(at=(0.84, 0.0), height=0.89, gaze=(6, -26)))
