@@ -10,6 +10,7 @@ from models.motions.actions.action import Action, Fault
 from models.motions.motion import Attempt, Motion
 from models.motions.natural import Natural
 from models.motions.performance import Performance
+from models.motions.standing import TOES_OUT_DEG
 from models.motions.subject import Subject
 from models.motions.timeline import Side, Timeline, snapped
 from models.motions.vocabulary import Arm, Body, Direction, Leg
@@ -77,7 +78,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
     line.key(
         on,
         Body(
-            at=(far - 0.52 + 0.10 * stiff + 0.06 * upright, 0.0),
+            at=(far - 0.52 + 0.10 * stiff, 0.0),
             height=0.68 + 0.06 * stiff,
             tip=22 - 7 * stiff,
             lean=36 - 12 * stiff,
@@ -101,7 +102,8 @@ def _swing_arms(line: Timeline, times: _Times, share: float) -> None:
     """Up, back in the crouch, forwards and up with the push-off, to the front for the landing; or a share of that."""
 
     def arms(at_s: float, upper: Direction, bend: float, turn: float, fore: Direction) -> None:
-        line.arms(at_s, Arm(upper=_on_the_way(upper, share), bend=14 + (bend - 14) * share, turn=turn, fore=fore))
+        side = tuple(share * value + (1 - share) * hanging for value, hanging in zip(fore, (1.0, -0.15, 0.0), strict=True))
+        line.arms(at_s, Arm(_on_the_way(upper, share), (side[0], side[1], side[2]), 14 + (bend - 14) * share, turn))
 
     arms(times.raised, (0.75, 0.2, 0.9), 14, 30, (1, -0.2, 0))
     arms((times.raised + times.low) / 2, (0.1, 0.3, -1), 14, 20, (1, -0.15, -0.3))
@@ -123,7 +125,7 @@ def _on_the_way(upper: Direction, share: float) -> Direction:
 def _leap(line: Timeline, side: Side, times: _Times, far: float, heel_deg: float) -> None:
     """One leg: the foot unrolls, the knee is drawn up, the heel reaches to the front, the knee gives way."""
     low, off, on, air = times.low, times.off, times.on, times.on - times.off
-    line.swing(side, off, on, (far, 0.0), pitch=-heel_deg, flat_s=0.07)
+    line.swing(side, off, on, (far, 0.0), yaw=TOES_OUT_DEG, pitch=-heel_deg, flat_s=0.07)
     for at_s, degrees in ((low, 0.0), (off - 0.45 * (off - low), 6.0), (off, 54.0)):
         line.pitch(at_s, side, degrees)
     for at_s, words in (

@@ -64,7 +64,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
 
 def _in_front(trunk_deg: float) -> Arm:
     """Level before the shoulders, whatever the trunk leans."""
-    up = np.radians(trunk_deg)
+    up = np.radians(min(trunk_deg, 80.0))
     return Arm(upper=(float(np.cos(up)), 0.05, float(np.sin(up))), fore=(0.0, -0.6, 0.8), bend=6, turn=60)
 
 

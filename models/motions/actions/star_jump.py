@@ -9,6 +9,7 @@ from models.motions.ballistics import GRAVITY_M_S2, airborne_s, push_off_s, take
 from models.motions.motion import Attempt, Motion
 from models.motions.natural import Natural
 from models.motions.performance import Performance
+from models.motions.standing import TOES_OUT_DEG
 from models.motions.subject import Subject
 from models.motions.timeline import Side, Timeline, snapped
 from models.motions.vocabulary import Arm, Body, Leg
@@ -80,7 +81,7 @@ def _spread_arms(line: Timeline, times_s: tuple[float, ...], late_s: float, shar
 def _spread_leg(line: Timeline, side: Side, times_s: tuple[float, ...], spread_deg: float) -> None:
     low, off, top, on = times_s
     out = np.radians(spread_deg)
-    line.swing(side, off, on, (0.0, 0.0), pitch=40, flat_s=0.1)
+    line.swing(side, off, on, (0.0, 0.0), yaw=TOES_OUT_DEG, pitch=40, flat_s=0.1)
     for at_s, degrees in ((low, 0.0), (off - 0.45 * (off - low), 4.0), (off, 52.0)):
         line.pitch(at_s, side, degrees)
     for at_s, words in (
