@@ -227,7 +227,9 @@ def _collar_m(anatomy: Anatomy, points_m: Float, wide: float) -> Float:
     half = 1.18 * wide * float(np.abs(skin[at_neck, 1]).max())
     middle = np.array((float(skin[at_neck, 0].mean()) + 0.012 * scale, 0.0, neck[2] + 0.012 * scale))
     away = np.linalg.norm((points_m - middle) / (1.2 * half, half, 1.15 * half), axis=1)
-    return np.asarray((away - 1) * half)
+    # The opening goes no higher up the nape than this.
+    below = neck[2] + 0.004 * scale + 0.25 * (points_m[:, 0] - middle[0]) - points_m[:, 2]
+    return np.minimum((away - 1) * half, below)
 
 
 def _cuff_m(anatomy: Anatomy, points_m: Float, sleeve: float) -> Float:

@@ -163,7 +163,7 @@ def _scarf(anatomy: Anatomy, colour: Colour, detail: int) -> Garment:
     oval = (np.hypot(around, (skin[:, 2] - middle_z) / half) - 1) * 0.06 * size
     oval = np.where(np.abs(skin[:, 2] - middle_z) < 2 * half, oval, 0.06 * size)
     neck = anatomy.joint("neck")
-    bottom = skin[:, 2] - (neck[2] - 0.012 * anatomy.scale) + 0.35 * (0.03 * anatomy.scale - (skin[:, 0] - neck[0]))
+    bottom = skin[:, 2] - (neck[2] - 0.035 * anatomy.scale) + 0.35 * (0.03 * anatomy.scale - (skin[:, 0] - neck[0]))
     field = np.minimum(oval, bottom)
     field[~anatomy.head] = np.minimum(field[~anatomy.head], bottom[~anatomy.head])
     ground = anatomy.head | anatomy.part("chest")
@@ -171,8 +171,12 @@ def _scarf(anatomy: Anatomy, colour: Colour, detail: int) -> Garment:
     piece = selected(anatomy.skin, faces)
     on_head = refined(clipped(piece, field[np.unique(anatomy.skin.faces[faces])]), detail)
     calm = on_head.moved(smoothed(on_head.vertices_m, on_head.faces, 10))
+    ears = [anatomy.point(name) for name in ("left_ear", "right_ear")]
+    near = np.min([np.linalg.norm(on_head.vertices_m - ear, axis=1) for ear in ears], axis=0) / (0.045 * size)
+    pressed = np.exp(-(near**4))[:, None]
+    calm = calm.moved((1 - pressed) * calm.vertices_m + pressed * smoothed(calm.vertices_m, calm.faces, 60))
     shell = blown_up(calm, np.full(len(calm.vertices_m), 0.008 * size), 2)
     outside = ((shell.vertices_m - on_head.vertices_m) * calm.normals).sum(1) - 0.005 * size
-    shell = shell.moved(shell.vertices_m + np.maximum(-outside, 0)[:, None] * calm.normals)
+    shell = shell.moved(shell.vertices_m + (1 - pressed) * np.maximum(-outside, 0)[:, None] * calm.normals)
     shell = turned_in(shell, 0.006 * size).painted(colour)
     return Garment(replace(shell, uv=cloth_uv(shell.vertices_m, anatomy.scale)), field - 0.012 * size)

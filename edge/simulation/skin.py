@@ -42,7 +42,7 @@ def visible_skin(anatomy: Anatomy, covered_m: Float, tone: Colour) -> Shell:
     uv[head] = FACE.uv(azimuth(anatomy, shell.vertices_m) / np.pi, _down(anatomy, shell.vertices_m[:, 2]))[head]
     painted = Shell(shell.vertices_m, shell.faces, shell.weights, shell.colours, uv)
     plain = Shell(shell.vertices_m, shell.faces, shell.weights, shell.colours, plain_uv(len(uv)))
-    field = -covered_m
+    field = np.where(anatomy.part("cavities"), 1.0, -covered_m)
     # Vertices on the border of head and body occur twice, at the same place: once for each part of the picture.
     pieces = [
         _cut(painted, field, of_head),
