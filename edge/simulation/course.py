@@ -35,6 +35,14 @@ class Course:
         return np.asarray(np.polynomial.polynomial.polyval(s, self.powers))
 
 
+def places_at(course: Course, times: Float) -> Float:
+    """(V, 3) where each vertex is at an s of its own, (V,)."""
+    places = np.zeros(course.powers.shape[1:])
+    for power in course.powers[::-1]:
+        places = places * times[:, None] + power
+    return places
+
+
 def half_s(shutter: Shutter) -> float:
     """Half of the time that a picture takes."""
     return max((shutter.readout_s + shutter.exposure_s) / 2, _SHORTEST_S)

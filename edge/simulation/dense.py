@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from edge.simulation import shaders
-from edge.simulation.course import Course, course_of
-from edge.simulation.lens import Lens, land
+from edge.simulation.course import Course, course_of, places_at
+from edge.simulation.lens import FAR_M, NEAR_M, Lens, land
 from edge.simulation.meshes import corners_of
-from edge.simulation.performers import packed
+from edge.simulation.performers import landing
 from edge.simulation.renderer import View
 from edge.simulation.scene import Scene
 from edge.simulation.surface import Surface
@@ -107,8 +107,8 @@ class DensePainter:
         gl.enable_only(gl.DEPTH_TEST)
         self._target.clear(-1.0, -1.0, -1.0, -1.0)
         set_lens(self._room_program, view.lens)
-        set_lens(self._moving_program, view.lens)
-        self._moving_program["start"] = 0.0
+        self._moving_program["size"] = view.camera.size_px
+        self._moving_program["near_far"] = (NEAR_M, FAR_M)
         for number, buffer in self._room:
             self._room_program["shown"] = number
             _draw_once(gl, self._room_program, [(buffer, "3f 2f 1f", "place", "weights", "number")])
@@ -116,10 +116,9 @@ class DensePainter:
             if course is None:
                 continue
             self._moving_program["shown"] = number
-            self._moving_program["readout"] = view.shutter.readout_s / course.half_s
-            buffer = gl.buffer(_face_corners(course, view.renderer.performers[number].actor.surface).tobytes())
-            names = ("power_0", "power_1", "power_2", "power_3")
-            _draw_once(gl, self._moving_program, [(buffer, "3f 3f 3f 3f", *names)])
+            corners = view.renderer.performers[number].faces.ravel()
+            buffer = gl.buffer(_landed_and_places(course, view)[corners].tobytes())
+            _draw_once(gl, self._moving_program, [(buffer, "3f 3f", "landed", "place")])
             buffer.release()
         return self._read()
 
@@ -159,6 +158,7 @@ def _room_corners(surface: Surface, lens: Lens) -> Float32:
     return tessellate(np.concatenate((places, shares, numbers), axis=2), lens).astype(np.float32)
 
 
-def _face_corners(course: Course, surface: Surface) -> Float32:
-    """(3 F, 4, 3) coefficients of each corner of each face."""
-    return packed(course)[np.asarray(surface.faces).ravel()]
+def _landed_and_places(course: Course, view: View) -> Float32:
+    """(V, 6) pixels, depth, and place in the world when the row is exposed."""
+    times = land(course.powers, view.lens.numbers, 0.0, view.shutter.readout_s / course.half_s, view.camera.size_px[1])[2]
+    return np.hstack((landing(course, view.lens, view.shutter), places_at(course, times))).astype(np.float32)

@@ -1,7 +1,8 @@
-"""The room through one camera: its light in each pixel, and its depths. Drawn once, finely."""
+"""The room through one camera: its light in each pixel, its depths, and where its ground is. Drawn once, finely."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,9 +12,10 @@ from edge.simulation.boxes import Box
 from edge.simulation.lens import FAR_M, NEAR_M, Lens
 from edge.simulation.meshes import corners_of
 from edge.simulation.scene import Scene
+from edge.simulation.shadows import HIGHEST_M
 from edge.simulation.surface import Surface
 from edge.simulation.tessellation import tessellate
-from edge.simulation.uniforms import set_lamps, set_lens, set_surface, texture_of
+from edge.simulation.uniforms import set_lamps, set_lens, set_texture, texture_of
 from models.arrays import Float32
 
 if TYPE_CHECKING:
@@ -22,6 +24,30 @@ if TYPE_CHECKING:
 _SAMPLES = 4
 """Across and down in each pixel."""
 _TILE_PX = 256
+_ANISOTROPY = 8.0
+
+
+@dataclass(frozen=True, eq=False)
+class EmptyRoom:
+    """A room through one camera.
+
+    Attributes:
+        light: (H, W, 3) linear.
+        depths: in metres along the axis, in the four samples of each pixel.
+        ground: (H, W, 2) x and y of level ground in each pixel; NaN where there is other than that.
+    """
+
+    light: Float32
+    depths: "moderngl.Texture"
+    ground: Float32
+
+
+@dataclass(frozen=True, eq=False)
+class _Piece:
+    surface: Surface
+    texture: "moderngl.Texture | None"
+    buffer: "moderngl.Buffer"
+    array: "moderngl.VertexArray"
 
 
 class RoomPainter:
@@ -29,7 +55,7 @@ class RoomPainter:
 
     def __init__(self, gl: "moderngl.Context", scene: Scene) -> None:
         self._gl = gl
-        self._room = [(surface, corners_of(surface), texture_of(gl, surface)) for surface in scene.room]
+        self._room = [(surface, corners_of(surface), texture_of(gl, surface, _ANISOTROPY)) for surface in scene.room]
         self._program = gl.program(shaders.ROOM_VERTEX, shaders.ROOM_FRAGMENT)
         set_lamps(self._program, scene.lamps, scene.ambient)
         self._depths_program = gl.program(shaders.WHOLE_VERTEX, shaders.DEPTHS_FRAGMENT)
@@ -39,41 +65,42 @@ class RoomPainter:
         self._fine = gl.texture((fine, fine), 4, dtype="f2")
         self._fine_tile = gl.framebuffer([self._fine], gl.depth_renderbuffer((fine, fine)))
         self._tile = gl.framebuffer([gl.texture((_TILE_PX, _TILE_PX), 4, dtype="f4")])
+        self._ground_program = gl.program(shaders.ROOM_VERTEX, shaders.GROUND_FRAGMENT)
+        self._ground_program["highest"] = HIGHEST_M
         self._average_program = gl.program(shaders.WHOLE_VERTEX, shaders.AVERAGE_FRAGMENT)
         self._average_program["samples"] = _SAMPLES
         self._average = gl.vertex_array(self._average_program, [])
 
-    def paint(self, lens: Lens) -> tuple[Float32, "moderngl.Texture"]:
-        """(H, W, 3) linear light, and depths in metres along the axis in the four samples of each pixel."""
+    def paint(self, lens: Lens) -> "EmptyRoom":
+        """The room through a lens."""
         with self._pieces(lens) as pieces:
-            return self._light(lens, pieces), self._sample_depths(lens, pieces)
+            return EmptyRoom(self._light(lens, pieces), self._sample_depths(lens, pieces), self._ground(lens, pieces))
 
     @contextmanager
-    def _pieces(self, lens: Lens) -> Iterator["list[tuple[Surface, moderngl.Texture | None, moderngl.VertexArray]]"]:
+    def _pieces(self, lens: Lens) -> Iterator["list[_Piece]"]:
         """Surfaces cut for the camera."""
-        gl, pieces, buffers = self._gl, [], []
+        gl, pieces = self._gl, []
         for surface, corners, texture in self._room:
             cut = tessellate(corners, lens)
             if len(cut):
                 buffer = gl.buffer(cut.astype(np.float32).tobytes())
                 layout = [(buffer, "3f 3f 3f 2f", "place", "normal", "colour", "uv")]
-                pieces.append((surface, texture, gl.vertex_array(self._program, layout)))
-                buffers.append(buffer)
+                pieces.append(_Piece(surface, texture, buffer, gl.vertex_array(self._program, layout)))
         try:
             yield pieces
         finally:
-            for _, _, array in pieces:
-                array.release()
-            for buffer in buffers:
-                buffer.release()
+            for piece in pieces:
+                piece.array.release()
+                piece.buffer.release()
 
-    def _draw(self, pieces: "list[tuple[Surface, moderngl.Texture | None, moderngl.VertexArray]]") -> None:
+    def _draw(self, pieces: "list[_Piece]") -> None:
         self._gl.enable_only(self._gl.DEPTH_TEST)
-        for surface, texture, array in pieces:
-            set_surface(self._program, surface, texture)
-            array.render()
+        for piece in pieces:
+            self._program["gloss"] = piece.surface.gloss
+            set_texture(self._program, piece.texture)
+            piece.array.render()
 
-    def _light(self, lens: Lens, pieces: "list[tuple[Surface, moderngl.Texture | None, moderngl.VertexArray]]") -> Float32:
+    def _light(self, lens: Lens, pieces: "list[_Piece]") -> Float32:
         width, height = lens.camera.size_px
         light = np.zeros((height, width, 3), np.float32)
         if not pieces:
@@ -93,9 +120,7 @@ class RoomPainter:
                 light[top : top + _TILE_PX, left : left + _TILE_PX] = drawn[: height - top, : width - left]
         return light
 
-    def _sample_depths(
-        self, lens: Lens, pieces: "list[tuple[Surface, moderngl.Texture | None, moderngl.VertexArray]]"
-    ) -> "moderngl.Texture":
+    def _sample_depths(self, lens: Lens, pieces: "list[_Piece]") -> "moderngl.Texture":
         gl, size = self._gl, lens.camera.size_px
         samples = gl.depth_texture(size, samples=4)
         target = gl.framebuffer([], samples)
@@ -114,3 +139,21 @@ class RoomPainter:
         for spent in (out, target, samples):
             spent.release()
         return depths
+
+    def _ground(self, lens: Lens, pieces: "list[_Piece]") -> Float32:
+        gl, (width, height) = self._gl, lens.camera.size_px
+        places = gl.texture((width, height), 4, dtype="f4")
+        depths = gl.depth_renderbuffer((width, height))
+        target = gl.framebuffer([places], depths)
+        target.use()
+        target.clear(np.nan, np.nan)
+        gl.enable_only(gl.DEPTH_TEST)
+        set_lens(self._ground_program, lens)
+        for piece in pieces:
+            array = gl.vertex_array(self._ground_program, [(piece.buffer, "3f 3f 20x", "place", "normal")])
+            array.render()
+            array.release()
+        ground = np.frombuffer(target.read(components=2, dtype="f4"), np.float32).reshape(height, width, 2)
+        for spent in (target, depths, places):
+            spent.release()
+        return ground

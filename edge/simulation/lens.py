@@ -23,7 +23,7 @@ _WIDEST = 12.0
 _STEPS = 24001
 _SPARE = 1.02
 _ITERATIONS = 12
-_CLOSE_ROWS = 1e-4
+_CLOSE_ROWS = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +79,7 @@ def lens_of(camera: Camera) -> Lens:
 
 
 @compiled
-def land(course: Float, numbers: Float, start: float, readout: float, height: int) -> tuple[Float, Float]:
+def land(course: Float, numbers: Float, start: float, readout: float, height: int) -> tuple[Float, Float, Float]:
     """Where moving points are when the row on which they land is exposed.
 
     Args:
@@ -90,11 +90,13 @@ def land(course: Float, numbers: Float, start: float, readout: float, height: in
         height: rows of the picture.
 
     Returns:
-        (V, 2) pixels and (V,) depths along the camera's axis in metres; NaN pixels for what is nearer than `NEAR_M`.
+        (V, 2) pixels, (V,) depths along the camera's axis in metres, and (V,) the s of the rows; NaN pixels for what is nearer than
+        `NEAR_M`.
     """
     degree, count = course.shape[0], course.shape[1]
     pixels = np.empty((count, 2))
     depths = np.empty(count)
+    times = np.empty(count)
     local = np.empty(3)
     for vertex in range(count):
         s = start
@@ -108,6 +110,7 @@ def land(course: Float, numbers: Float, start: float, readout: float, height: in
                 for row in range(3):
                     local[row] += numbers[3 * row + axis] * value
             depths[vertex] = local[2]
+            times[vertex] = s
             if not local[2] >= NEAR_M:
                 pixels[vertex, 0] = np.nan
                 pixels[vertex, 1] = np.nan
@@ -133,4 +136,4 @@ def land(course: Float, numbers: Float, start: float, readout: float, height: in
             if abs(following - s) <= _CLOSE_ROWS * abs(readout) / height:
                 break
             s = following
-    return pixels, depths
+    return pixels, depths, times

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from edge.simulation.surface import Faces, Surface, Texture
-from models.arrays import Float, Float32, UInt8
+from models.arrays import Bool, Float, Float32, UInt8
 from models.compiled import Counts, compiled
 
 _SAME_PLACE_DECIMALS = 6
@@ -61,10 +61,10 @@ def corners_of(surface: Surface) -> Float:
     return corners
 
 
-def appearance(surface: Surface) -> Float32:
-    """(V, 5) linear colour and place in the texture."""
+def texture_places(surface: Surface) -> Float32:
+    """(V, 2) place in the texture; anything without one."""
     uv = np.zeros((len(surface.vertices_m), 2)) if surface.texture is None else surface.texture.uv
-    return np.hstack((linear(surface.colours), uv)).astype(np.float32)
+    return np.asarray(uv, np.float32)
 
 
 def texels(texture: Texture) -> UInt8:
@@ -72,10 +72,21 @@ def texels(texture: Texture) -> UInt8:
     return np.ascontiguousarray(cv2.cvtColor(np.ascontiguousarray(texture.picture), cv2.COLOR_RGB2RGBA))
 
 
-def is_closed(faces: Counts) -> bool:
-    """Whether each edge of the triangles (F, 3) has one triangle on either side."""
+def near_rim(faces: Counts, rings: int) -> Bool:
+    """(F,) whether a triangle is at most so many triangles away from an edge that has nothing on its other side.
+
+    Only there may the inner side of a surface be seen: in a sleeve's end, not in the middle of a body.
+
+    Args:
+        faces: (F, 3) of welded vertices.
+        rings: how many.
+    """
+    count = int(faces.max()) + 1
     ends = np.concatenate((faces[:, :2], faces[:, 1:], faces[:, ::2][:, ::-1])).astype(np.int64)
-    ends = ends[ends[:, 0] != ends[:, 1]]
-    ways = ends[:, 0] << 32 | ends[:, 1]
-    back = ends[:, 1] << 32 | ends[:, 0]
-    return len(np.unique(ways)) == len(ways) and bool(np.isin(back, ways).all())
+    ways, back = ends[:, 0] * count + ends[:, 1], ends[:, 1] * count + ends[:, 0]
+    alone = ends[(ends[:, 0] != ends[:, 1]) & ~np.isin(ways, back)]
+    near = np.zeros(count, np.bool_)
+    near[alone] = True
+    for _ in range(rings - 1):
+        near[faces[near[faces].any(1)]] = True
+    return np.asarray(near[faces].any(1))

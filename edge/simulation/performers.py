@@ -4,17 +4,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from edge.simulation.boxes import Box
 from edge.simulation.course import Course
-from edge.simulation.meshes import appearance, is_closed, normals, welded
+from edge.simulation.lens import Lens, land
+from edge.simulation.lighting import lit
+from edge.simulation.meshes import linear, near_rim, normals, texture_places, welded
 from edge.simulation.scene import Actor
 from edge.simulation.shutter import Shutter
-from edge.simulation.uniforms import set_surface, texture_of
-from models.arrays import Float32
+from edge.simulation.uniforms import set_texture, texture_of
+from models.arrays import Float, Float32
 
 if TYPE_CHECKING:
     import moderngl
 
-_TERMS = 4
+_RINGS = 3
+"""How deep one looks into a sleeve."""
+_MARGIN_PX = 3
+_EVERY = 11
+"""Of the vertices, whose motion is looked at to know how fast an actor is."""
+_BEHIND = (0.0, 0.0, -1.0)
 
 
 class Performer:
@@ -23,44 +31,85 @@ class Performer:
     Attributes:
         actor: the actor.
         faces: (F, 3) its triangles.
-        closed: whether its surface has no edge, so that its inner side is never seen.
     """
 
     def __init__(self, gl: "moderngl.Context", program: "moderngl.Program", actor: Actor) -> None:
         surface = actor.surface
         self.actor = actor
         self.faces = np.ascontiguousarray(surface.faces, np.int32)
-        self._welds = welded(np.asarray(surface.vertices_m))
-        self.closed = is_closed(self._welds[self.faces])
-        self._loaded: Course | None = None
+        self._gl = gl
         self._program = program
+        self._welds = welded(np.asarray(surface.vertices_m))
+        self._colours = linear(np.asarray(surface.colours, np.float64))
+        self._normals: tuple[Course, Float] | None = None
         count = len(surface.vertices_m)
-        self._powers = gl.buffer(reserve=count * _TERMS * 12, dynamic=True)
-        self._normals = gl.buffer(reserve=count * 12, dynamic=True)
-        self._texture = texture_of(gl, surface)
+        self._landed = gl.buffer(reserve=count * 12, dynamic=True)
+        self._lit = gl.buffer(reserve=count * 32, dynamic=True)
+        self._texture = texture_of(gl, surface, anisotropy=1.0)
         layout = [
-            (self._powers, "3f 3f 3f 3f", "power_0", "power_1", "power_2", "power_3"),
-            (self._normals, "3f", "normal"),
-            (gl.buffer(appearance(surface).tobytes()), "3f 2f", "colour", "uv"),
+            (self._landed, "3f", "landed"),
+            (self._lit, "4f 4f", "outer_light", "inner_light"),
+            (gl.buffer(texture_places(surface).tobytes()), "2f", "uv"),
         ]
-        self._array = gl.vertex_array(program, layout, index_buffer=gl.buffer(self.faces.tobytes()))
+        self._outside = gl.vertex_array(program, layout, index_buffer=gl.buffer(self.faces.tobytes()))
+        rim = self.faces[near_rim(self._welds[self.faces], _RINGS)]
+        self._rim = gl.vertex_array(program, layout, index_buffer=gl.buffer(rim.tobytes())) if len(rim) else None
 
-    def load(self, course: Course) -> None:
-        """Make it ready to be drawn along a course; kept for the next camera that takes a picture at the same time."""
-        if self._loaded is not course:
-            self._loaded = course
-            self._powers.write(packed(course).tobytes())
-            self._normals.write(normals(course.powers[0], self.faces, self._welds).astype(np.float32).tobytes())
+    def light(self, course: Course, lamps: Float, ambient: Float, eye_m: Float) -> None:
+        """Light it as it stands in the middle of a picture."""
+        if self._normals is None or self._normals[0] is not course:
+            self._normals = course, normals(course.powers[0], self.faces, self._welds)
+        gloss = float(self.actor.surface.gloss)
+        self._lit.write(lit(course.powers[0], self._normals[1], self._colours, lamps, ambient, eye_m, gloss).tobytes())
 
-    def draw(self, course: Course, shutter: Shutter) -> None:
-        """Draw it along the course that was loaded."""
-        self._program["readout"] = shutter.readout_s / course.half_s
-        set_surface(self._program, self.actor.surface, self._texture)
-        self._array.render()
+    def draw(self, landed: Float32) -> None:
+        """Draw it where its vertices have landed, as `landing` gives them."""
+        gl = self._gl
+        self._landed.write(landed.tobytes())
+        set_texture(self._program, self._texture)
+        gl.enable_only(gl.DEPTH_TEST | gl.CULL_FACE)
+        self._outside.render()
+        if self._rim is not None:
+            gl.enable_only(gl.DEPTH_TEST)
+            self._rim.render()
 
 
-def packed(course: Course) -> Float32:
-    """(V, 4, 3) coefficients of each vertex."""
-    out = np.zeros((course.powers.shape[1], _TERMS, 3), np.float32)
-    out[:, : len(course.powers)] = course.powers.transpose(1, 0, 2)
-    return out
+def landing(course: Course, lens: Lens, shutter: Shutter, start: float = 0.0) -> Float32:
+    """(V, 3) pixels and depth at which vertices are exposed, `start` (in s of the course) away from mid-exposure."""
+    pixels, depths, _ = land(course.powers, lens.numbers, start, shutter.readout_s / course.half_s, lens.camera.size_px[1])
+    landed = np.column_stack((pixels, depths)).astype(np.float32)
+    landed[np.isnan(pixels[:, 0])] = _BEHIND
+    return landed
+
+
+class Seen:
+    """A performer in one picture.
+
+    Attributes:
+        performer: who.
+        course: of its vertices.
+        landed: (V, 3) pixels and depth at mid-exposure.
+        moved_px: how far its fastest vertices move in the picture during the exposure.
+        box: what it covers, blur included; empty if it is not in the picture.
+    """
+
+    def __init__(self, performer: Performer, course: Course, lens: Lens, shutter: Shutter) -> None:
+        self.performer = performer
+        self.course = course
+        self.landed = landing(course, lens, shutter)
+        self.moved_px = 0.0
+        self.box = Box(0, 0, 0, 0)
+        width, height = lens.camera.size_px
+        before = self.landed[:, 2] > 0
+        if not before.any():
+            return
+        low, high = self.landed[before, :2].min(0), self.landed[before, :2].max(0)
+        some = Course(course.mid_s, course.half_s, np.ascontiguousarray(course.powers[:, ::_EVERY]))
+        half = 0.5 * shutter.exposure_s / course.half_s
+        first, last = (landing(some, lens, shutter, start) for start in (-half, half))
+        inside = ((first[:, :2] >= 0) & (first[:, :2] < (width, height))).all(1) & (first[:, 2] > 0) & (last[:, 2] > 0)
+        self.moved_px = float(np.sqrt(((last - first)[inside, :2] ** 2).sum(1)).max(initial=0.0))
+        margin = _MARGIN_PX + 0.75 * self.moved_px
+        left, top = np.clip(np.floor(low - margin), 0, (width, height)).astype(int).tolist()
+        right, bottom = np.clip(np.ceil(high + margin) + 1, 0, (width, height)).astype(int).tolist()
+        self.box = Box(left, top, right, bottom)

@@ -10,7 +10,6 @@ uniform vec3 translation;
 uniform float focal[5];      // fx, skew, cx, fy, cy
 uniform float distortion[5]; // k1, k2, p1, p2, k3
 uniform float field_limit;
-uniform vec2 size;
 uniform vec4 window;         // the part of the picture that is drawn: first pixel, number of pixels
 uniform vec2 near_far;
 
@@ -40,28 +39,7 @@ vec4 to_clip(vec3 local) {
 }
 """
 
-MOVING: Final = """
-layout(location = 0) in vec3 power_0;
-layout(location = 1) in vec3 power_1;
-layout(location = 2) in vec3 power_2;
-layout(location = 3) in vec3 power_3;
-uniform float start;   // s of the middle row
-uniform float readout; // s from the first row to the last
-
-vec3 place_at_its_row(out vec3 local) {
-    float s = start;
-    vec3 place;
-    for (int turn = 0; turn < 6; ++turn) {
-        place = ((power_3 * s + power_2) * s + power_1) * s + power_0;
-        local = rotation * place + translation;
-        if (local.z < near_far.x || readout == 0.0) break;
-        float row = clamp(to_pixel(local).y, -0.1 * size.y, 1.1 * size.y);
-        s = start + readout * (row / (size.y - 1.0) - 0.5);
-    }
-    return place;
-}
-"""
-
+# As `edge.simulation.lighting` has it for what moves.
 LAMPS: Final = """
 uniform vec3 lamp_directions[8];
 uniform vec3 lamp_colours[8];
@@ -74,7 +52,7 @@ void lighten(vec3 n, vec3 view, out vec3 light, out vec3 shine) {
     // Floors send up less than ceilings and walls send down.
     light = ambient * (0.8 + 0.2 * n.z);
     shine = vec3(0.0);
-    float sharp = exp2(2.0 + 7.0 * gloss);
+    float sharp = exp2(round(2.0 + 7.0 * gloss));
     for (int lamp = 0; lamp < lamps; ++lamp) {
         float falls = dot(n, lamp_directions[lamp]);
         if (falls <= 0.0) continue;
@@ -86,28 +64,27 @@ void lighten(vec3 n, vec3 view, out vec3 light, out vec3 shine) {
 }
 """
 
-# The triangles of what moves are hardly larger than pixels: light in their corners is light enough.
+# What moves has landed in the picture and was lit before (`edge.simulation.lens.land`, `edge.simulation.lighting`).
 MOVING_VERTEX: Final = (
     VERSION
-    + LENS
-    + MOVING
-    + LAMPS
     + """
-layout(location = 4) in vec3 normal;
-layout(location = 5) in vec3 colour;
-layout(location = 6) in vec2 uv;
-out vec3 outer, outer_shine, inner, inner_shine;
+layout(location = 0) in vec3 landed; // column and row of pixels, depth in metres
+layout(location = 1) in vec4 outer_light; // with the lamps' highlight
+layout(location = 2) in vec4 inner_light;
+layout(location = 3) in vec2 uv;
+uniform vec2 size;
+uniform vec2 near_far;
+uniform vec2 nudge; // in pixels
+out vec4 outer, inner;
 out vec2 spot;
 
 void main() {
-    vec3 local;
-    vec3 view = normalize(eye - place_at_its_row(local));
-    lighten(normal, view, outer, outer_shine);
-    lighten(-normal, view, inner, inner_shine);
-    outer *= colour;
-    inner *= colour;
+    outer = outer_light;
+    inner = inner_light;
     spot = uv;
-    gl_Position = to_clip(local);
+    float n = near_far.x, f = near_far.y;
+    vec2 place = (landed.xy + nudge + 0.5) / size * 2.0 - 1.0;
+    gl_Position = vec4(place * landed.z, ((f + n) * landed.z - 2.0 * f * n) / (f - n), landed.z);
 }
 """
 )
@@ -115,19 +92,21 @@ void main() {
 MOVING_FRAGMENT: Final = (
     VERSION
     + """
-in vec3 outer, outer_shine, inner, inner_shine;
+in vec4 outer, inner;
 in vec2 spot;
 uniform bool textured;
 uniform sampler2D picture;
 uniform sampler2D room_depths; // in each of the four samples of a pixel
+uniform int only;              // the sample that is drawn into a target with one a pixel; -1: all four
 layout(location = 0) out vec4 seen;
 
 void main() {
     bvec4 before = lessThan(vec4(1.0 / gl_FragCoord.w), texelFetch(room_depths, ivec2(gl_FragCoord.xy), 0));
-    if (!any(before)) discard;
-    gl_SampleMask[0] = int(before.x) | int(before.y) << 1 | int(before.z) << 2 | int(before.w) << 3;
+    if (only >= 0 ? !before[only] : !any(before)) discard;
+    gl_SampleMask[0] = only >= 0 ? 1 : int(before.x) | int(before.y) << 1 | int(before.z) << 2 | int(before.w) << 3;
     vec3 own = textured ? texture(picture, spot).rgb : vec3(1.0);
-    seen = vec4(gl_FrontFacing ? own * outer + outer_shine : own * inner + inner_shine, 1.0);
+    vec4 light = gl_FrontFacing ? outer : inner;
+    seen = vec4(own * light.rgb + light.a, 1.0);
 }
 """
 )
@@ -173,6 +152,22 @@ void main() {
 """
 )
 
+# Where level ground is, for shadows; what is steeper or missing is not a number.
+GROUND_FRAGMENT: Final = (
+    VERSION
+    + """
+in vec3 at, facing, tint;
+in vec2 spot;
+uniform float highest;
+out vec4 ground;
+
+void main() {
+    float nothing = uintBitsToFloat(0x7fc00000u);
+    ground = vec4(abs(normalize(facing).z) > 0.9 && at.z < highest ? at.xy : vec2(nothing), 0.0, 1.0);
+}
+"""
+)
+
 TRUTH_FRAGMENT: Final = (
     VERSION
     + """
@@ -213,20 +208,23 @@ void main() {
 # Each face has three corners of its own here.
 MOVING_TRUTH_VERTEX: Final = (
     VERSION
-    + LENS
-    + MOVING
     + """
+layout(location = 0) in vec3 landed;
+layout(location = 1) in vec3 place;
+uniform vec2 size;
+uniform vec2 near_far;
 out vec3 at;
 out vec2 shares;
 flat out float face;
 
 void main() {
-    vec3 local;
-    at = place_at_its_row(local);
+    at = place;
     int corner = gl_VertexID % 3;
     shares = vec2(corner == 1, corner == 2);
     face = float(gl_VertexID / 3);
-    gl_Position = to_clip(local);
+    float n = near_far.x, f = near_far.y;
+    vec2 spot = (landed.xy + 0.5) / size * 2.0 - 1.0;
+    gl_Position = vec4(spot * landed.z, ((f + n) * landed.z - 2.0 * f * n) / (f - n), landed.z);
 }
 """
 )
@@ -261,9 +259,19 @@ uniform float weight;
 out vec4 gathered;
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    gathered = weight * (texelFetch(samples, pixel, 0) + texelFetch(samples, pixel, 1)
+    gathered = 0.25 * weight * (texelFetch(samples, pixel, 0) + texelFetch(samples, pixel, 1)
         + texelFetch(samples, pixel, 2) + texelFetch(samples, pixel, 3));
 }
+"""
+)
+
+GATHER_SINGLE_FRAGMENT: Final = (
+    VERSION
+    + """
+uniform sampler2D samples;
+uniform float weight;
+out vec4 gathered;
+void main() { gathered = weight * texelFetch(samples, ivec2(gl_FragCoord.xy), 0); }
 """
 )
 

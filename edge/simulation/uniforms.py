@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 _MOST_LAMPS = 8
 _SRGB8_ALPHA8 = 0x8C43
 _PICTURE_UNIT = 2
-_ANISOTROPY = 8.0
 
 
 def set_lamps(program: "moderngl.Program", lamps: Sequence[Lamp], ambient: tuple[float, float, float]) -> None:
@@ -53,23 +52,22 @@ def set_lens(program: "moderngl.Program", lens: Lens, box: Box | None = None) ->
             program[name] = value
 
 
-def set_surface(program: "moderngl.Program", surface: Surface, texture: "moderngl.Texture | None") -> None:
-    """Gloss and texture."""
-    program["gloss"] = surface.gloss
+def set_texture(program: "moderngl.Program", texture: "moderngl.Texture | None") -> None:
+    """The texture of what is drawn next, if it has one."""
     program["textured"] = texture is not None
     program["picture"] = _PICTURE_UNIT
     if texture is not None:
         texture.use(_PICTURE_UNIT)
 
 
-def texture_of(gl: "moderngl.Context", surface: Surface) -> "moderngl.Texture | None":
-    """A surface's texture with its mip maps."""
+def texture_of(gl: "moderngl.Context", surface: Surface, anisotropy: float) -> "moderngl.Texture | None":
+    """A surface's texture with its mip maps; `anisotropy` for floors that are seen aslant."""
     if surface.texture is None:
         return None
     data = texels(surface.texture)
     height, width = data.shape[:2]
     texture = gl.texture((width, height), 4, data.tobytes(), internal_format=_SRGB8_ALPHA8)
     texture.build_mipmaps()
-    texture.filter = (gl.LINEAR_MIPMAP_LINEAR, gl.LINEAR)
-    texture.anisotropy = _ANISOTROPY
+    texture.filter = (gl.LINEAR_MIPMAP_LINEAR if anisotropy > 1 else gl.LINEAR_MIPMAP_NEAREST, gl.LINEAR)
+    texture.anisotropy = anisotropy
     return texture

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from edge.simulation.course import Course, Courses, course_through
+from edge.simulation.course import Course, Courses, course_through, places_at
 from edge.simulation.lens import Lens, land
 from edge.simulation.meshes import corners_of
 from edge.simulation.scene import Pupil, Scene
@@ -66,22 +66,19 @@ class Witness:
 
     def _pupil(self, pupil: Pupil, t_s: float) -> "_Found":
         points = course_through(lambda when: np.concatenate((pupil.joints_m(when), pupil.coco_m(when))), t_s, self._shutter)
-        pixels, depths = self._land(points)
-        rows = np.clip(np.nan_to_num(pixels[:, 1]), -0.1 * self._height, 1.1 * self._height)
-        s = (self._shutter.row_delay_s(rows, self._height) / points.half_s)[:, None]
-        exposed: Float = sum((power * s**degree for degree, power in enumerate(points.powers)), np.zeros(()))
+        pixels, depths, times = self._land(points)
         pose = pupil.pose(t_s)
         now = np.concatenate((pupil.joints_m(t_s), pupil.coco_m(t_s)))
-        return _Found(pose.translation_m, pose.rotations_rad, now, exposed, pixels, depths)
+        return _Found(pose.translation_m, pose.rotations_rad, now, places_at(points, times), pixels, depths)
 
-    def _seen(self, landed: list[tuple[Float, Float] | None], pixels: Float, depths: Float) -> UInt8:
+    def _seen(self, landed: list[tuple[Float, Float, Float] | None], pixels: Float, depths: Float) -> UInt8:
         """(P, K) `Seen`."""
         width, height = self._lens.camera.size_px
         queries = pixels.reshape(-1, 2)
         first, owners = np.full(len(queries), np.inf), np.full(len(queries), -1)
         for number, (faces, there) in enumerate(zip(self._faces, landed, strict=True)):
             if there is not None:
-                first_surfaces(*there, faces, number, queries, first, owners, width, height)
+                first_surfaces(*there[:2], faces, number, queries, first, owners, width, height)
         first_surfaces(*self._room, self._room_faces, len(landed), queries, first, owners, width, height)
         first_of, owners_of = (found.reshape(depths.shape) for found in (first, owners))
         inside = ((pixels >= -0.5) & (pixels < np.array((width, height)) - 0.5)).all(-1)
@@ -93,7 +90,7 @@ class Witness:
         ]
         return np.where(inside, np.stack(seen), np.uint8(Seen.OUTSIDE))
 
-    def _land(self, course: Course) -> tuple[Float, Float]:
+    def _land(self, course: Course) -> tuple[Float, Float, Float]:
         return land(course.powers, self._lens.numbers, 0.0, self._shutter.readout_s / course.half_s, self._height)
 
     @property
@@ -121,7 +118,7 @@ class _Found:
         self.depths = np.full(_POINTS, np.nan) if depths is None else depths
 
 
-def _box(landed: tuple[Float, Float] | None) -> Float:
+def _box(landed: tuple[Float, Float, Float] | None) -> Float:
     """(4,) around all that lies before the camera."""
     pixels = np.empty((0, 2)) if landed is None else landed[0][np.isfinite(landed[0]).all(1)]
     return np.concatenate((pixels.min(0), pixels.max(0))) if len(pixels) else np.full(4, np.nan)
