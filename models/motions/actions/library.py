@@ -2,7 +2,16 @@
 
 from typing import Final
 
-from models.motions.actions import badminton_clear, basketball_shot, long_jump, soccer_kick, squat, star_jump, volleyball_spike
+from models.motions.actions import (
+    badminton_clear,
+    basketball_shot,
+    forward_roll,
+    long_jump,
+    soccer_kick,
+    squat,
+    star_jump,
+    volleyball_spike,
+)
 from models.motions.actions.action import Action
 
 _ALL: Final[tuple[Action, ...]] = (
@@ -11,6 +20,7 @@ _ALL: Final[tuple[Action, ...]] = (
     volleyball_spike.ACTION,
     soccer_kick.ACTION,
     long_jump.ACTION,
+    forward_roll.ACTION,
     squat.ACTION,
     star_jump.ACTION,
 )

@@ -1,0 +1,114 @@
+"""A lesson plan says everything about a lesson; what it cannot mean is refused by the name of its key."""
+
+import re
+from pathlib import Path
+from typing import get_args
+
+import msgspec
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from edge.simulation.command import find_plan
+from edge.simulation.plan import Pastime, Plan, decode_plan, encode_plan, fingerprint, schema
+from edge.simulation.plan_check import require_sound
+from edge.simulation.presets import PRESETS, acceptance, six_actions, tiny
+from edge.simulation.split import SPLITS
+from models.errors import UserError
+from models.motions.between import PASTIMES
+from tests.lesson_folder import plan_with
+
+HEAD = 'version = 1\nname = "lesson"\nseed = 3\n'
+PUPIL = '[[pupils]]\nname = "p1"\n'
+SQUAT = '[[pupils.performs]]\naction = "squat"\n'
+
+
+def sound(text: str) -> Plan:
+    plan = decode_plan(text.encode(), "my.toml")
+    require_sound(plan, "my.toml")
+    return plan
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        (HEAD, "pupils"),
+        (HEAD + "pupils = []\n", r"\$\.pupils"),
+        ("seed = = 3", "no TOML"),
+        (HEAD.replace("1", "2") + PUPIL, r"version 2 .* this KineBox, .*1"),
+        (HEAD + "lenght_s = 3\n" + PUPIL, "lenght_s"),
+        (HEAD + "length_s = 0\n" + PUPIL, r"\$\.length_s"),
+        (HEAD + "size_px = [1280]\n" + PUPIL, r"\$\.size_px"),
+        (HEAD + 'split = "train"\n' + PUPIL, r"\$\.split"),
+        (HEAD + 'rig = "circle"\n' + PUPIL, "no rig 'circle'; there are corners"),
+        (HEAD + "cameras = 5\n" + PUPIL, "cameras: rig 'corners' has 4, not 5"),
+        (HEAD + PUPIL + "age_years = 3\n", r"\$\.pupils\[0\]\.age_years"),
+        (HEAD + PUPIL + PUPIL, "pupils: 'p1' occurs twice"),
+        (HEAD + PUPIL + SQUAT.replace("squat", "fly"), r"pupils\[0\]\.performs\[0\]: there is no action 'fly'; there are "),
+        (HEAD + PUPIL + SQUAT + "tempo = 3.0\n", r"\$\.pupils\[0\]\.performs\[0\]\.tempo"),
+        (HEAD + PUPIL + SQUAT + "faults = {laughs = 1.0}\n", r"pupils\[0\]\.performs\[0\]: squat has no fault 'laughs'; it has "),
+        (HEAD + PUPIL + SQUAT + "faults = {shallow = 7.0}\n", r"\$\.pupils\[0\]\.performs\[0\]\.faults"),
+        (HEAD + PUPIL + SQUAT + "begins_s = 4.0\n" + SQUAT + "begins_s = 2.0\n", r"pupils\[0\]\.performs\[1\]\.begins_s"),
+        (HEAD + PUPIL + "[shutter]\nexposure_ms = 50\n", r"\$\.shutter\.exposure_ms"),
+        (HEAD + PUPIL + '[[bumps]]\ncamera = "cam09"\nat_s = 1\n', r"bumps\[0\]\.camera: rig 'corners' has no camera 'cam09'"),
+        (HEAD + PUPIL + '[[faults]]\ncamera = "cam07"\nkind = "drop"\nat_s = 1\nfor_s = 1\n', r"faults\[0\]\.camera"),
+        (HEAD + PUPIL + '[[faults]]\ncamera = "cam01"\nkind = "late"\nby_s = -1\nat_s = 1\nfor_s = 1\n', "late needs by_s"),
+        (HEAD + PUPIL + '[[swaps]]\ncameras = ["cam01", "cam01"]\nat_s = 1\n', r"swaps\[0\]: .* with itself"),
+    ],
+)
+def test_what_a_plan_cannot_mean_is_refused_in_one_line_that_names_file_and_key(text: str, key: str) -> None:
+    with pytest.raises(UserError, match=rf"^lesson plan my\.toml: .*{key}") as raised:
+        sound(text)
+    assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize("plan", [*(preset.make() for preset in PRESETS.values()), *(acceptance(7, split) for split in SPLITS)])
+def test_every_plan_that_comes_with_kinebox_is_sound_and_the_same_after_a_trip_through_its_file(plan: Plan) -> None:
+    again = sound(encode_plan(plan).decode())
+    assert again == plan
+    assert fingerprint(again, "recipe") == fingerprint(plan, "recipe")
+
+
+def test_presets_are_found_by_name_and_what_is_none_is_said() -> None:
+    assert find_plan("six_actions") == six_actions()
+    with pytest.raises(UserError, match=r"no lesson plan 'sevn_actions'.*six_actions"):
+        find_plan("sevn_actions")
+
+
+def test_a_plan_knows_every_pastime() -> None:
+    assert get_args(Pastime) == PASTIMES
+
+
+def test_the_fingerprint_changes_with_whatever_could_change_a_picture() -> None:
+    base = tiny()
+    others = [
+        msgspec.structs.replace(base, seed=2),
+        msgspec.structs.replace(base, split="development"),
+        msgspec.structs.replace(base, length_s=1.1),
+        plan_with(),
+    ]
+    digests = [fingerprint(plan, "a") for plan in (base, *others)] + [fingerprint(base, "b")]
+    assert len(set(digests)) == len(digests)
+
+
+@given(st.integers(0, 2**31 - 1), st.integers(0, 2**31 - 1))
+def test_lessons_of_the_two_splits_and_of_different_seeds_draw_different_lots(seed: int, other: int) -> None:
+    lots = {(split, each): acceptance(each, split).lot("noise", "cam01") for split in SPLITS for each in {seed, other}}
+    assert len(set(lots.values())) == len(lots)
+
+
+def test_each_performance_varies_in_its_own_way_unless_a_seed_is_given() -> None:
+    plan = acceptance(3)
+    seeds = {plan.performance(0, number).seed for number in range(6)}
+    assert len(seeds) == 6
+    first = msgspec.structs.replace(plan.pupils[0].performs[0], seed=11)
+    fixed = msgspec.structs.replace(plan, pupils=[msgspec.structs.replace(plan.pupils[0], performs=[first])])
+    assert fixed.performance(0, 0).seed == 11
+
+
+def test_the_page_about_lesson_plans_names_every_key_and_its_example_is_sound() -> None:
+    page = (Path(__file__).parents[2] / "docs/simulation.md").read_text()
+    missing = [key for table in schema()["$defs"].values() for key in table["properties"] if f"`{key}`" not in page]
+    assert set(missing) <= {"every_s", "for_s", "by_s", "ppm", "share"}, "keys of [[faults]] are those of the site file"
+    (example,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    assert sound(example).pupils[0].performs[1].action == "forward_roll"
