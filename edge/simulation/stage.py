@@ -26,7 +26,7 @@ from models.errors import UserError
 from models.motions import mat
 from models.motions.standpoint import Standpoint
 
-_ON_A_MAT: Final = ("forward_roll",)
+ON_A_MAT: Final = ("forward_roll",)
 _PILED_MATS: Final = 8
 _FURNITURE: Final[dict[str, Callable[[], Surface]]] = {
     "vaulting_box": furniture.vaulting_box,
@@ -86,7 +86,7 @@ def set_stage(plan: Plan) -> Stage:
     Raises:
         UserError: a pupil cannot do what the plan says.
     """
-    members = [_cast(plan, number) for number in range(len(plan.pupils))]
+    members = [member_of(plan, number) for number in range(len(plan.pupils))]
     programmes = [programme_of(plan, number, member.subject) for number, member in enumerate(members)]
     motions = [programme.motion for programme in programmes]
     gym = make_gym(plan.split, plan.seed if plan.gym is UNSET else plan.gym)
@@ -105,7 +105,8 @@ def set_stage(plan: Plan) -> Stage:
     return Stage(scene, rig_of(plan), length_s, attempts)
 
 
-def _cast(plan: Plan, number: int) -> Member:
+def member_of(plan: Plan, number: int) -> Member:
+    """Who plays pupil `number`: his body, as it is cast by the plan and, for tests, off the model; and his looks."""
     wanted = plan.pupils[number]
     looks = plan.lot("looks", number) if wanted.looks is UNSET else wanted.looks
     age_years = None if wanted.age_years is UNSET else wanted.age_years
@@ -117,7 +118,7 @@ def _mats(plan: Plan, programmes: Sequence[Programme]) -> Iterator[Surface]:
     """A mat wherever somebody rolls."""
     for pupil, programme in zip(plan.pupils, programmes, strict=True):
         for wanted, begin in zip(pupil.performs, programme.begins, strict=True):
-            if wanted.action in _ON_A_MAT:
+            if wanted.action in ON_A_MAT:
                 middle = begin.of(Standpoint(mat.FROM_M + mat.LENGTH_M / 2))
                 yield placed(furniture.mat(), (middle.x_m, middle.y_m, 0.0), middle.heading_rad)
 
