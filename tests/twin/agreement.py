@@ -12,13 +12,14 @@ import numpy as np
 
 from models.arrays import Float
 from models.messages.observation import Observation
+from models.skeleton import coco
 from tests.bench.closed_loop import Event
 from tests.bench.metrics.position import position_error
 from tests.bench.metrics.steadiness import jitter_mm
 from tests.bench.reconstruct.figures import judge
 from tests.bench.reconstruct.fused import fuse
 from tests.bench.reconstruct.lesson import START_NS, Lesson
-from tests.bench.table import Cell, ResultTable, table_of
+from tests.bench.table import Cell, ResultTable
 from tests.twin.context import Context, look
 from tests.twin.errors import Errors, errors_of
 from tests.twin.likeness import GROUPS, LAGS, SHARES, Description, describe
@@ -82,19 +83,16 @@ class Agreement:
 
     def tables(self) -> list[ResultTable]:
         """Figures side by side, then the errors themselves."""
-        rows = {}
-        for action in (*self.actions, None):
-            row: dict[str, Cell] = {}
-            for name in FIGURES:
-                row[f"{name}, rendered"] = self.figure(self.rendered, name, action)
-                row["twin" + " " * FIGURES.index(name)] = self.figure(self.twin, name, action)
-                row["gap %" + " " * FIGURES.index(name)] = self.gap_pct(name, action)
-            rows[action or "mean of the actions"] = row
-        return [
-            table_of("twin against rendered: errors in mm, jitter in mm a frame squared", "action", rows),
-            _sizes(self.told, self.made),
-            _habits(self.told, self.made),
+        columns = ("action", *(column for name in FIGURES for column in (name, "twin", "gap %")))
+        rows: list[tuple[Cell, ...]] = [
+            (action or "mean of the actions", *(cell for name in FIGURES for cell in self._beside(name, action)))
+            for action in (*self.actions, None)
         ]
+        title = "the twin beside rendered lessons: mpjpe in mm, jitter in mm a frame squared"
+        return [ResultTable(title, columns, tuple(rows)), _sizes(self.told, self.made), _habits(self.told, self.made)]
+
+    def _beside(self, name: str, action: str | None) -> tuple[float, float, float]:
+        return self.figure(self.rendered, name, action), self.figure(self.twin, name, action), self.gap_pct(name, action)
 
     def figures(self) -> dict[str, float]:
         """For the report: the gap that is judged is the larger one of live and smooth."""
@@ -172,25 +170,29 @@ def _errors(streams: Sequence[Stream]) -> list[tuple[Context, Errors]]:
 
 
 def _sizes(told: Description, made: Description) -> ResultTable:
-    rows: dict[str, dict[str, Cell]] = {}
-    for group, joints in GROUPS.items():
-        row: dict[str, Cell] = {}
-        for index, share in enumerate(SHARES):
-            for who, description in (("network", told), ("twin", made)):
-                row[f"{100 * share:.0f} %, {who}"] = 100 * float(description.quantiles[list(joints), index].mean())
-        rows[group] = row
-    return table_of("errors in the picture, quantiles in per cent of the stature", "joints", rows)
+    columns = {
+        f"{100 * share:.0f} %": [100 * each.quantiles[:, index] for each in (told, made)] for index, share in enumerate(SHARES)
+    }
+    return _by_joints("errors in the picture, quantiles in per cent of the stature", columns)
 
 
 def _habits(told: Description, made: Description) -> ResultTable:
-    rows: dict[str, dict[str, Cell]] = {}
-    for group, joints in GROUPS.items():
-        row: dict[str, Cell] = {}
-        for who, description in (("network", told), ("twin", made)):
-            for index, lag in enumerate(LAGS):
-                row[f"memory {lag}, {who}"] = float(np.nanmean(description.memory[list(joints), index]))
-            row[f"crossed %, {who}"] = 100 * float(description.crossed[list(joints)].mean())
-            row[f"score to error, {who}"] = float(np.nanmean(description.knowing[list(joints)]))
-            row[f"lost %, {who}"] = 100 * description.lost
-        rows[group] = row
-    return table_of("habits of the errors: correlation in time, swaps, what scores know", "joints", rows)
+    columns = {f"memory {lag}": [each.memory[:, index] for each in (told, made)] for index, lag in enumerate(LAGS)}
+    columns["crossed %"] = [100 * each.crossed for each in (told, made)]
+    columns["score to error"] = [each.knowing for each in (told, made)]
+    columns["score"] = [each.score for each in (told, made)]
+    columns["lost %"] = [np.full(coco.COUNT, 100 * each.lost) for each in (told, made)]
+    return _by_joints("habits of the errors: correlation so many pictures apart, swaps, whether scores know", columns)
+
+
+def _by_joints(title: str, columns: Mapping[str, Sequence[Float]]) -> ResultTable:
+    """A row a group of joints; for each column the network's mean over them and the twin's."""
+    rows: list[tuple[Cell, ...]] = [
+        (group, *(_mean(values[list(joints)]) for pair in columns.values() for values in pair)) for group, joints in GROUPS.items()
+    ]
+    return ResultTable(title, ("joints", *(name for column in columns for name in (column, "twin"))), tuple(rows))
+
+
+def _mean(values: Float) -> float:
+    finite = values[np.isfinite(values)]
+    return float(finite.mean()) if len(finite) else float("nan")

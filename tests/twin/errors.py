@@ -5,7 +5,7 @@ the two, and how far from it, is told apart: a swapped wrist is then on the othe
 is. One of a pair alone on the other's place is told just so.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -68,13 +68,34 @@ def errors_of(frame: Frame, said: Said) -> Errors:
     """What was wrong with what was said."""
     found = said.found & np.isfinite(frame.points_px).all(axis=(1, 2))
     own = _in_frame(said.keypoints_px - frame.points_px, frame)
-    other = _in_frame(said.keypoints_px - frame.points_px[:, MIRROR], frame)
-    far, farther = np.linalg.norm(other, axis=-1), np.linalg.norm(own, axis=-1)
-    crossed = (far < _NEARER * farther) & (farther > _APART) & found[:, None]
-    residual = np.where(crossed[..., None], other, own)
+    residual, crossed = _told_apart(own, _in_frame(frame.points_px[:, MIRROR] - frame.points_px, frame))
     spread = np.log(said.sigma_px / said.side_px[:, None])
     residual, score, spread = (np.nan_to_num(values) for values in (residual, said.score, spread))
-    return Errors(residual, crossed, score, spread, found, said.renewed & found)
+    return Errors(residual, crossed & found[:, None], score, spread, found, said.renewed & found)
+
+
+def as_seen(pose: Float, errors: Errors) -> Errors:
+    """The same keypoints, told as one does who knows nothing but them: a swap of points that coincide is none.
+
+    Args:
+        pose: (n, 17, 2) as `Context.pose`.
+        errors: of these situations.
+    """
+    residual, crossed = _told_apart(displacement(pose, errors), pose[:, MIRROR] - pose)
+    return replace(errors, residual=residual, crossed=crossed)
+
+
+def _told_apart(own: Float, across: Float) -> tuple[Float, Bool]:
+    """Residuals (n, 17, 2) and whether they are from the counterpart (n, 17).
+
+    Args:
+        own: (n, 17, 2) keypoint less its own true point.
+        across: (n, 17, 2) the counterpart's true point less its own.
+    """
+    other = own - across
+    far, farther = np.linalg.norm(other, axis=-1), np.linalg.norm(own, axis=-1)
+    crossed = (far < _NEARER * farther) & (farther > _APART)
+    return np.where(crossed[..., None], other, own), crossed
 
 
 def said_of(frame: Frame, errors: Errors, delay_s: Float) -> Said:
@@ -88,9 +109,9 @@ def said_of(frame: Frame, errors: Errors, delay_s: Float) -> Said:
     return Said(keypoints_px, sigma_px, score, side_px, errors.renewed, delay_s)
 
 
-def displacement(frame_pose: Float, errors: Errors) -> Float:
-    """(n, 17, 2) keypoint less its own true point, in statures, crossed or not; `frame_pose` as `Context.pose`."""
-    across = np.where(errors.crossed[..., None], frame_pose[:, MIRROR] - frame_pose, 0.0)
+def displacement(pose: Float, errors: Errors) -> Float:
+    """(n, 17, 2) keypoint less its own true point, in statures, crossed or not; `pose` as `Context.pose`."""
+    across = np.where(errors.crossed[..., None], pose[:, MIRROR] - pose, 0.0)
     return np.asarray(errors.residual + across)
 
 

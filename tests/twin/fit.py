@@ -20,7 +20,7 @@ from models.skeleton import coco
 from tests.twin import walk
 from tests.twin.bootstrap import Bootstrap
 from tests.twin.context import Context
-from tests.twin.errors import Errors
+from tests.twin.errors import Errors, as_seen
 from tests.twin.library import Library, build, encode
 from tests.twin.likeness import Told, describe, unlikeness
 from tests.twin.settings import Settings, to_plain
@@ -110,7 +110,7 @@ def left_out(library: Library, settings: Settings) -> tuple[Told, Told]:
         context = library.context.chosen(entries)
         walker = ready[seed].walker(np.random.default_rng((seed, index)))
         told.append((context, library.errors.chosen(entries)))
-        made.append((context, walker.errors(context)))
+        made.append((context, as_seen(context.pose, walker.errors(context))))
     return told, made
 
 
