@@ -229,7 +229,7 @@ def _collar_m(anatomy: Anatomy, points_m: Float, wide: float) -> Float:
     away = np.linalg.norm((points_m - middle) / (1.2 * half, half, 1.15 * half), axis=1)
     # The opening goes no higher up the nape than this.
     below = neck[2] + 0.004 * scale + 0.25 * (points_m[:, 0] - middle[0]) - points_m[:, 2]
-    return np.minimum((away - 1) * half, below)
+    return np.asarray(np.minimum((away - 1) * half, below))
 
 
 def _cuff_m(anatomy: Anatomy, points_m: Float, sleeve: float) -> Float:
