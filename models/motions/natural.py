@@ -7,13 +7,13 @@ import numpy as np
 from models.arrays import Float
 from models.motions.performance import Performance
 
-_DIRECTION: Final = 0.05
+_DIRECTION: Final = {"upper": 0.05, "fore": 0.06, "thigh": 0.025}
 _DEGREES: Final = {
-    **dict.fromkeys(("bend", "turn", "wrist", "toes", "gaze"), 4.0),
-    **dict.fromkeys(("cock", "curl", "facing", "twist"), 3.0),
+    **dict.fromkeys(("bend", "turn", "wrist", "toes", "gaze"), 4.5),
+    **dict.fromkeys(("cock", "curl", "facing", "twist"), 3.5),
     **dict.fromkeys(("tip", "side", "lean", "bow"), 2.0),
 }
-"""Standard deviation at skill 0."""
+"""Standard deviation at skill 0, the first in shares of the direction's length."""
 _PACE: Final = 0.06
 _MOST: Final = 1.8
 """No deviation is larger than so many standard deviations: it would look like a fault."""
@@ -29,7 +29,7 @@ class Natural:
 
     def __call__(self, word: str, value: Float) -> Float:
         """A word of the vocabulary, deviating."""
-        sigma = _DIRECTION * float(np.linalg.norm(value)) if word in {"upper", "fore", "thigh"} else _DEGREES[word]
+        sigma = _DIRECTION[word] * float(np.linalg.norm(value)) if word in _DIRECTION else _DEGREES[word]
         return np.asarray(value + self._size * sigma * self._normal(value.shape))
 
     def seconds(self, standard_s: float) -> float:

@@ -114,8 +114,20 @@ class Timeline:
         right_arm: Arm | None = None,
         left_leg: Leg | None = None,
         right_leg: Leg | None = None,
+        exact: bool = False,
     ) -> None:
-        """A key pose: what its words say, at this time. A later call for the same time and word takes its place."""
+        """A key pose: what its words say, at this time. A later call for the same time and word takes its place.
+
+        Args:
+            at_s: time.
+            body: and
+            left_arm: and
+            right_arm: and
+            left_leg: and
+            right_leg: the words.
+            exact: said as it is, without natural variation: where a ball is to be met.
+        """
+        vary = None if exact else self._vary
         for prefix, words in (
             ("left_arm.", left_arm),
             ("right_arm.", right_arm),
@@ -126,13 +138,13 @@ class Timeline:
                 side, limb = prefix.split("_")
                 side = self.side("left" if side == "left" else "right")
                 for field in fields(words):
-                    self._say(at_s, f"{side}_{limb}{field.name}", field.name, getattr(words, field.name))
+                    self._say(at_s, f"{side}_{limb}{field.name}", field.name, getattr(words, field.name), vary)
         if body is not None:
             for name, value in (("tip", body.tip), ("lean", body.lean)):
-                self._say(at_s, name, name, value)
+                self._say(at_s, name, name, value, vary)
             for name, value in (("facing", body.facing), ("side", body.side), ("bow", body.bow), ("twist", body.twist)):
-                self._say(at_s, name, name, value, self.across[1])
-            self._say(at_s, "gaze", "gaze", body.gaze, np.array((self.across[1], 1.0)))
+                self._say(at_s, name, name, value, vary, self.across[1])
+            self._say(at_s, "gaze", "gaze", body.gaze, vary, np.array((self.across[1], 1.0)))
             self._set_pelvis(at_s, body.at, body.height)
 
     def arms(self, at_s: float, both: Arm) -> None:
@@ -241,10 +253,18 @@ class Timeline:
                 self._knots[name][snapped(at_s)] = value
         self._set_pelvis(at_s, at, 1.0)
 
-    def _say(self, at_s: float, name: str, word: str, value: float | tuple[float, ...] | None, mirror: Float | float = 1.0) -> None:
+    def _say(
+        self,
+        at_s: float,
+        name: str,
+        word: str,
+        value: float | tuple[float, ...] | None,
+        vary: Vary | None,
+        mirror: Float | float = 1.0,
+    ) -> None:
         if value is not None:
             said = np.asarray(value, np.float64)
-            self._set(at_s, name, mirror * (said if self._vary is None else self._vary(word, said)))
+            self._set(at_s, name, mirror * (said if vary is None else vary(word, said)))
 
     def _set(self, at_s: float, name: str, value: float | Float) -> None:
         self._knots[name][snapped(at_s)] = np.asarray(value, np.float64)

@@ -64,7 +64,7 @@ def _run_up(line: Timeline, times: tuple[float, ...], performance: Performance) 
     line.step("left", landed + 0.02, landed + 0.48 * (end - landed), (_END, 0.0), yaw=7, height=0.08, heel=40)
     line.step("right", landed + 0.5 * (end - landed), end - 0.04, (_END, 0.0), yaw=7, height=0.05)
     line.flight(off, planted)
-    back = 0.6 * behind
+    back = 0.4 * behind
     line.stand(start - 0.05)
     line.key(first, Body(at=(0.3, 0.02), height=0.965, gaze=(-4, 28)))
     line.key(second, Body(at=(0.7, 0.01), height=0.955))
@@ -80,15 +80,15 @@ def _run_up(line: Timeline, times: tuple[float, ...], performance: Performance) 
 
 def _kicking_leg(line: Timeline, times: tuple[float, ...], performance: Performance) -> None:
     _, _, _, planted, hit, high, landed, _ = times
-    back = max(1.0 - 0.55 * performance.severity("no_backswing"), -0.05)
-    on = max(1.0 - 0.75 * performance.severity("no_follow_through"), -0.2)
+    back = max(performance.amplitude - 0.55 * performance.severity("no_backswing"), -0.05)
+    on = max(performance.amplitude - 0.75 * performance.severity("no_follow_through"), -0.2)
     reach = 0.35 * 0.26 * performance.severity("support_foot_behind")
     line.swing("right", planted - _LEAP_S, landed, (_END - 0.02, -0.03), yaw=8, pitch=0)
     line.key(planted - _LEAP_S, right_leg=Leg((-0.42, 0.04, -1.0), 30, 5, 45))
     line.key(planted - 0.03, right_leg=Leg((-0.4, 0.1, -1.0), 40 + 26 * back, 6, 34))
     line.key(planted + 0.05, right_leg=Leg((0.1 - 0.6 * back, 0.14, -1.0), 8 + 94 * back, 8, 30))
     line.key(hit - 0.055, right_leg=Leg((0.5 + reach, 0.12, -1.0), 12 + 88 * back, 10, 32))
-    line.key(hit, right_leg=Leg((0.8 + reach, 0.12, -1.0), 47, 10, 28))
+    line.key(hit, right_leg=Leg((0.8 + reach, 0.12, -1.0), 47, 10, 28), exact=True)
     line.key(hit + 0.04, right_leg=Leg((0.92 + reach, 0.06, -0.9), 16, 10, 34))
     line.key(high, right_leg=Leg((0.85 + 0.5 * on, -0.12, -1.0 + 0.75 * on), 14 + 30 * (1 - on), 8, 34))
     line.key(landed - 0.09, right_leg=Leg((0.62, 0.02, -1.0), 58, 8, -5))
@@ -101,7 +101,8 @@ def _trunk(line: Timeline, times: tuple[float, ...], performance: Performance) -
     line.key(first, Body(tip=7, lean=4, facing=4, twist=-6))
     line.key(second, Body(tip=8, lean=4, facing=-6, twist=6))
     line.key(planted, Body(tip=4 - 6 * lean, lean=2 - 12 * lean, facing=-22, twist=20, side=-5, bow=-2))
-    line.key(hit, Body(tip=2 - 12 * lean, lean=12 - 24 * lean, facing=4, twist=6, side=-16, bow=8))
+    line.key(hit, Body(tip=2 - 12 * lean, facing=4, side=-16), exact=True)
+    line.key(hit, Body(lean=12 - 24 * lean, twist=6, bow=8))
     line.key(high, Body(tip=-8 - 8 * lean, lean=20 - 28 * lean, facing=18, twist=-12, side=-8, bow=4))
     line.key(landed, Body(tip=6, lean=6, facing=6, twist=-2, side=0, bow=0))
 
