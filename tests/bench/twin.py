@@ -1,8 +1,8 @@
 """Fit the twin to rendered lessons and print how far it can be trusted: `make twin`.
 
-It is fitted to lessons of development pupils and judged on lessons of test pupils, of whom it therefore knows nothing. What has to be
-rendered and looked at first takes some minutes a lesson, once. `--leave-out` fits to the test pupils' lessons instead, judges each by
-a twin that was fitted to the others, and writes no file: a quick look where only those are rendered.
+It is fitted to lessons of development pupils and judged on lessons of test pupils, of whom it therefore knows nothing. What has to
+be rendered and looked at first takes some minutes a lesson, once. `--leave-out` fits to the test pupils' lessons instead, judges
+each by a twin that was fitted to the others, and writes no file: a quick look where only those are rendered.
 """
 
 import argparse

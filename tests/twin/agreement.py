@@ -28,7 +28,7 @@ from tests.twin.truth import Stream
 from tests.twin.twin import Twin
 
 BAR_PCT: Final = 15.0
-TELLINGS: Final = 3
+TELLINGS: Final = 5
 FIGURES: Final = ("smooth mpjpe", "live mpjpe", "smooth jitter", "live jitter")
 """Millimetres, and millimetres a frame squared. Figures of attempts will join them when attempts are found."""
 

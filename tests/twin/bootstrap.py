@@ -28,11 +28,13 @@ class Transitions:
         before: (N) errors in the first picture.
         after: (N) errors in the second one.
         context: (N) of the second one.
+        person: (N, P) one for whose they are, by the seed of the lesson, zero for the others.
     """
 
     before: Errors
     after: Errors
     context: Context
+    person: Float
 
     def __len__(self) -> int:
         return len(self.context)
@@ -46,6 +48,7 @@ def transitions_of(library: Library, interval_s: float) -> Transitions:
         errs.together([before, before.mirrored()]),
         errs.together([after, after.mirrored()]),
         contexts.together([context, context.mirrored()]),
+        np.tile(np.eye(library.persons)[library.person_of(first)], (2, 1)),
     )
 
 
@@ -65,7 +68,7 @@ class PartTable:
         factors = error_factors(part, weights)
         residual_before, score_before = (np.ascontiguousarray(values[:, joints]) for values in (before.residual, before.score))
         table = walk.Table(
-            pictures=np.ascontiguousarray(of_picture(part, weights, transitions.context, after).T),
+            pictures=np.ascontiguousarray(of_picture(part, weights, transitions.context, after, transitions.person).T),
             befores=walk.error_rows(residual_before, score_before, factors),
             mode_before=mode_of(part.joints, before),
             mode_after=mode_of(part.joints, after),
@@ -95,9 +98,9 @@ class Bootstrap:
         self.transitions = transitions_of(library, interval_s)
         self.tables = [PartTable.of(part, settings, self.transitions) for part in PARTITIONS[settings.partition]]
 
-    def walker(self, random: np.random.Generator) -> "Walker":
-        """Somebody whose errors begin now."""
-        return Walker(self, random)
+    def walker(self, random: np.random.Generator, person: int = 0) -> "Walker":
+        """Somebody whose errors begin now; those who are to be one person in several cameras are given the same number."""
+        return Walker(self, random, person)
 
 
 @dataclass
@@ -112,9 +115,11 @@ class _State:
 class Walker:
     """One pupil's errors in one camera, picture by picture. The same random numbers give the same errors, however it is called."""
 
-    def __init__(self, bootstrap: Bootstrap, random: np.random.Generator) -> None:
+    def __init__(self, bootstrap: Bootstrap, random: np.random.Generator, person: int) -> None:
         self._bootstrap = bootstrap
         self._random = random
+        persons = bootstrap.transitions.person.shape[1]
+        self._person = np.eye(persons)[person % persons]
         counts = [len(table.part.joints) for table in bootstrap.tables]
         self._states = [_State(np.zeros((count, 2)), np.zeros((count, 2))) for count in counts]
 
@@ -131,7 +136,9 @@ class Walker:
     def _walk(self, table: PartTable, state: _State, context: Context, out: Errors, draws: Float, *, leads: bool) -> Counts:
         """Walk one part through the pictures; returns the transitions taken and writes the residuals."""
         settings, part = self._bootstrap.settings, table.part
-        path = walk.Path(of_picture(part, table.weights, context, out), out.found, mode_of(part.given, out), draws)
+        person = np.broadcast_to(self._person, (len(context), len(self._person)))
+        query = of_picture(part, table.weights, context, out, person)
+        path = walk.Path(query, out.found, mode_of(part.given, out), draws)
         taken, residual, trust = walk.walk(
             table.table, path, settings.around, settings.neighbours, leads, state.mode, state.residual, state.trust
         )

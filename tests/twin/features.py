@@ -31,6 +31,7 @@ class Weights:
         before: errors in the picture before.
         score: before.
         given: errors of earlier parts in the same picture.
+        person: whether it is the same person. Bodies and clothes have their own errors, and all cameras see the same ones.
     """
 
     pose: float = 1.0
@@ -41,14 +42,23 @@ class Weights:
     before: float = 2.0
     score: float = 0.5
     given: float = 0.5
+    person: float = 1.0
 
     def scaled(self, group: str, factor: float) -> "Weights":
         """The same with one group's weight multiplied."""
         return Weights(**(asdict(self) | {group: factor * asdict(self)[group]}))
 
 
-def of_picture(part: Part, weights: Weights, context: Context, errors: Errors) -> Float32:
-    """(n, D) of the situation, and of the errors of earlier parts, in one picture."""
+def of_picture(part: Part, weights: Weights, context: Context, errors: Errors, person: Float) -> Float32:
+    """(n, D) of the situation, and of the errors of earlier parts, in one picture.
+
+    Args:
+        part: of the body.
+        weights: of the groups.
+        context: of n situations.
+        errors: of which those of earlier parts are read.
+        person: (n, P) of P persons one for whose picture it is, zero for the others.
+    """
     joints, near = list(part.joints), list(part.joints + part.beside)
     groups = [
         _group(context.pose[:, near], _POSE, weights.pose),
@@ -56,6 +66,7 @@ def of_picture(part: Part, weights: Weights, context: Context, errors: Errors) -
         _group(context.hidden[:, joints], _HIDDEN, weights.hidden),
         _group(context.speed[:, joints], _SPEED, weights.speed),
         _group(np.stack((context.size, context.extent), axis=-1), _SIZE, weights.size),
+        (person * np.sqrt(weights.person / 2)).astype(np.float32),
     ]
     if part.given:
         given = list(part.given)

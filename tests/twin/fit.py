@@ -108,7 +108,7 @@ def left_out(library: Library, settings: Settings) -> tuple[Told, Told]:
     for index, seed in enumerate(library.seeds):
         entries = slice(int(library.starts[index]), int(library.starts[index + 1]))
         context = library.context.chosen(entries)
-        walker = ready[seed].walker(np.random.default_rng((seed, index)))
+        walker = ready[seed].walker(np.random.default_rng((seed, index)), seed)
         told.append((context, library.errors.chosen(entries)))
         made.append((context, as_seen(context.pose, walker.errors(context))))
     return told, made
@@ -118,8 +118,7 @@ def carried(library: Library, settings: Settings) -> tuple[float, ...]:
     """(17,) slopes; see this file's head."""
     bootstrap = Bootstrap(library, settings, settings.interval_s)
     first, _ = library.transitions(settings.interval_s)
-    stream = np.searchsorted(library.starts, np.concatenate((first, first)), side="right") - 1
-    group: Counts = np.array(library.seeds, np.int64)[stream]
+    group = np.tile(library.person_of(first), 2)
     out = np.zeros(coco.COUNT)
     for table in bootstrap.tables:
         out[list(table.part.joints)] = _slopes(table.table, group, settings.neighbours)

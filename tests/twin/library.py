@@ -55,6 +55,16 @@ class Library:
     def __len__(self) -> int:
         return len(self.t_s)
 
+    @property
+    def persons(self) -> int:
+        """How many pupils are in it: one a seed."""
+        return len(set(self.seeds))
+
+    def person_of(self, entries: Counts) -> Counts:
+        """(n,) number, below `persons`, of the pupil of each of these entries."""
+        numbers = np.unique(np.array(self.seeds), return_inverse=True)[1]
+        return np.asarray(numbers[np.searchsorted(self.starts, entries, side="right") - 1])
+
     def transitions(self, interval_s: float) -> tuple[Counts, Counts]:
         """Pairs of entries of one stream that are `interval_s` apart.
 

@@ -60,7 +60,8 @@ class Twin:
             lesson: who moves before which cameras.
 
         Yields:
-            Time of arrival in seconds from the lesson's beginning, and the observation. The same lesson gives the same ones.
+            Time of arrival in seconds from the lesson's beginning, and the observation. The same lesson gives the same ones;
+            lessons of consecutive seeds have the errors of each of the library's pupils in their turn.
 
         Raises:
             UserError: the library has no pictures at such intervals.
@@ -91,7 +92,7 @@ class Twin:
 
     def _voice(self, seed: int, index: int, times_s: Float, delays_s: Float, start_ns: int) -> "_Voice":
         interval_s = float(np.median(np.diff(times_s))) if len(times_s) > 1 else self.settings.interval_s
-        walker = self._bootstrap(interval_s).walker(np.random.default_rng((seed, index, 1)))
+        walker = self._bootstrap(interval_s).walker(np.random.default_rng((seed, index, 1)), seed)
         return _Voice(walker, np.random.default_rng((seed, index)), delays_s, Speaker(start_ns, self.settings.network))
 
     def _bootstrap(self, interval_s: float) -> Bootstrap:
