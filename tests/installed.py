@@ -7,7 +7,7 @@ import pytest
 
 from edge.footage.prepare import is_ready
 from edge.footage.sets import ONE_PERSON, Footage
-from edge.simulation.graphics import open_context
+from edge.simulation.graphics import graphics
 from models.errors import UserError
 
 ROOT = Path(__file__).parents[1]
@@ -28,7 +28,7 @@ def require_networks() -> Path:
 def require_graphics() -> None:
     """OpenGL over EGL, with which simulated pictures are drawn."""
     try:
-        open_context().release()
+        graphics()
     except UserError as error:
         _require(False, str(error))
 

@@ -21,7 +21,7 @@ import msgspec
 from edge.footage.index import Index
 from edge.simulation.attempts import encode_attempts
 from edge.simulation.files import ATTEMPTS_NAME, FOLDER, PLAN_NAME, RIG_NAME, SITE_NAME
-from edge.simulation.graphics import open_context
+from edge.simulation.graphics import graphics
 from edge.simulation.pieces import JOB_NAME, PART_SUFFIX, Job, alone_in, join_film, join_truth, missing, write_whole
 from edge.simulation.plan import Plan, encode_plan, fingerprint
 from edge.simulation.recipe import recipe
@@ -78,7 +78,7 @@ def render_lesson(plan: Plan, folder: Path, progress: Progress, look: Look = AS_
     with _disk_errors(part), alone_in(part):
         if is_rendered(folder, wanted):  # Somebody else was faster.
             return False
-        open_context().release()  # Who cannot render shall hear it at once.
+        graphics()  # Who cannot render shall hear it at once.
         stage = set_stage(plan)
         job = Job(
             fingerprint=wanted,

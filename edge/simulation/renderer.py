@@ -14,7 +14,7 @@ from edge.simulation import shaders
 from edge.simulation.boxes import Box, joined
 from edge.simulation.course import Courses, half_s
 from edge.simulation.empty_room import EmptyRoom, RoomPainter
-from edge.simulation.graphics import open_context
+from edge.simulation.graphics import graphics
 from edge.simulation.lens import FAR_M, NEAR_M, Lens, lens_of
 from edge.simulation.lighting import lamp_numbers
 from edge.simulation.performers import Performer, Seen, landing
@@ -53,7 +53,7 @@ class Renderer:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self.context = gl = open_context()
+        self.context = gl = graphics()
         self._painter = RoomPainter(gl, scene)
         self._program = gl.program(shaders.MOVING_VERTEX, shaders.MOVING_FRAGMENT)
         self._lamps, self._ambient = lamp_numbers(scene.lamps), np.array(scene.ambient, np.float64)
@@ -63,8 +63,6 @@ class Renderer:
         self._gather = gl.vertex_array(gl.program(shaders.WHOLE_VERTEX, shaders.GATHER_FRAGMENT), [])
         self._gather_single = gl.vertex_array(gl.program(shaders.WHOLE_VERTEX, shaders.GATHER_SINGLE_FRAGMENT), [])
         self._targets: dict[tuple[int, int], _Target] = {}
-        # Row 0 is drawn at the bottom: what goes round counter-clockwise in the world goes round clockwise here.
-        gl.front_face = "cw"
 
     def view(self, camera: Camera, shutter: Shutter) -> "View":
         """The scene through a camera. Raises UserError for a camera whose distortion folds the picture."""
