@@ -13,7 +13,7 @@ from edge.simulation.plan import PLAN_VERSION, PerformancePlan, Plan, PupilPlan,
 from edge.simulation.split import Split, generator
 from models.motions.performance import AMPLITUDE
 
-_START_M: Final = (-1.5, -0.8)
+_START_M: Final = (-1.5, -0.95)
 _BACK_DEG: Final = 158.0
 SIX_ACTIONS: Final = ("volleyball_spike", "basketball_shot", "badminton_clear", "long_jump", "soccer_kick", "forward_roll")
 """In the order in which a pupil performs them in the acting area: there along one side, then he turns, and back to the mat."""
@@ -34,7 +34,8 @@ class Preset:
 def six_actions() -> Plan:
     """The lesson that is shipped: a girl of twelve performs the six actions as the standards say, seen from four corners."""
     performs = [_performs(action) for action in SIX_ACTIONS]
-    return _lesson(SHIPPED, 1, PupilPlan(name="pupil", age_years=12.0, sex="female", place_m=_START_M, performs=performs))
+    pupil = PupilPlan(name="pupil", age_years=12.0, sex="female", looks=2, place_m=_START_M, performs=performs)
+    return _lesson(SHIPPED, 0, pupil, gym=1)
 
 
 def acceptance(
