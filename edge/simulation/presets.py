@@ -21,6 +21,9 @@ _TURNS_BEFORE: Final = "soccer_kick"
 _WAIT_S: Final = 0.5
 _TEMPO: Final = (0.85, 1.2)
 _LEFT_HANDED: Final = 0.15
+_PUPIL_YEARS: Final = (7.0, 16.0)
+_ADULT_YEARS: Final = (20.0, 50.0)
+_ADULT_EVERY: Final = 5
 
 
 @dataclass(frozen=True)
@@ -43,6 +46,8 @@ def acceptance(
 ) -> Plan:
     """A lesson on which figures are measured: whoever is cast by this seed performs the six actions in his own way.
 
+    Of five seeds that follow one another, four are of pupils and one of a grown-up.
+
     Args:
         seed: of the pupil, the gym, the rig's variant and how well, how fast and how largely he performs.
         split: figures of merit are measured on "test" only.
@@ -50,6 +55,7 @@ def acceptance(
         phases: see `ShutterPlan`.
     """
     random = generator(split, "acceptance", seed)
+    age_years = _round(random.uniform(*(_ADULT_YEARS if seed % _ADULT_EVERY == _ADULT_EVERY - 1 else _PUPIL_YEARS)))
     handed: Literal["right", "left"] = "left" if random.uniform() < _LEFT_HANDED else "right"
     performs = [
         _performs(
@@ -62,7 +68,7 @@ def acceptance(
         for action in SIX_ACTIONS
     ]
     name = f"acceptance-{split}-{rig}-{seed}".replace("_", "-")[:32]
-    pupil = PupilPlan(name="pupil", place_m=_START_M, performs=performs)
+    pupil = PupilPlan(name="pupil", age_years=age_years, place_m=_START_M, performs=performs)
     return _lesson(name, seed, pupil, split=split, rig=rig, shutter=ShutterPlan(phases=phases))
 
 
