@@ -178,11 +178,15 @@ def _sizes(told: Description, made: Description) -> ResultTable:
 
 def _habits(told: Description, made: Description) -> ResultTable:
     columns = {f"memory {lag}": [each.memory[:, index] for each in (told, made)] for index, lag in enumerate(LAGS)}
+    columns["steady %"] = [100 * each.steady for each in (told, made)]
     columns["crossed %"] = [100 * each.crossed for each in (told, made)]
     columns["score to error"] = [each.knowing for each in (told, made)]
     columns["score"] = [each.score for each in (told, made)]
     columns["lost %"] = [np.full(coco.COUNT, 100 * each.lost) for each in (told, made)]
-    return _by_joints("habits of the errors: correlation so many pictures apart, swaps, whether scores know", columns)
+    return _by_joints(
+        "habits of the errors: correlation so many pictures apart, a stream's mean in per cent of the stature, swaps, scores",
+        columns,
+    )
 
 
 def _by_joints(title: str, columns: Mapping[str, Sequence[Float]]) -> ResultTable:

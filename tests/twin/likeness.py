@@ -36,6 +36,7 @@ class Description:
         spell: pictures that a loss lasts in the mean; 0 if there is none.
         knowing: (17,) rank correlation of score and distance; negative, if scores know.
         score: (17,) mean.
+        steady: (17,) size of a stream's mean residual, in statures, mean over the streams: what no smoothing takes off.
     """
 
     quantiles: Float
@@ -45,6 +46,7 @@ class Description:
     spell: float
     knowing: Float
     score: Float
+    steady: Float
 
 
 def describe(told: Told) -> Description:
@@ -62,26 +64,30 @@ def describe(told: Told) -> Description:
         spell=float(sum(one.sum() for one in lost) / ends) if ends else 0.0,
         knowing=np.array([_rank_correlation(score[:, j], distance[:, j]) for j in range(coco.COUNT)]),
         score=score.mean(axis=0),
+        steady=np.mean([_steady(errors) for _, errors in told if errors.found.any()], axis=0),
     )
 
 
 def unlikeness(told: Description, twin: Description) -> dict[str, float]:
     """How far two descriptions are apart, by kind; `all` is what fitting makes small.
 
-    Sizes are compared by the mean absolute logarithm of their ratio, memory and what scores know by their mean absolute difference,
-    shares by the logarithm of their ratio, rare ones as if they were a little less rare.
+    Sizes and steadiness are compared by the mean absolute logarithm of their ratio, memory and what scores know by their mean
+    absolute difference, shares by the logarithm of their ratio, rare ones as if they were a little less rare.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         size = float(np.nanmean(np.abs(np.log(twin.quantiles / told.quantiles))))
+        steady = float(np.nanmean(np.abs(np.log(twin.steady / told.steady))))
     apart = {
         "size": size,
+        "steady": steady,
         "memory": float(np.nanmean(np.abs(twin.memory - told.memory))),
         "crossed": float(np.mean(_ratio(twin.crossed, told.crossed))),
         "lost": float(_ratio(np.array(twin.lost), np.array(told.lost))),
         "knowing": float(np.nanmean(np.abs(twin.knowing - told.knowing))),
     }
     # Swaps and losses are rare, so that their shares are known to a quarter or so at best.
-    return apart | {"all": apart["size"] + apart["memory"] + 0.3 * apart["crossed"] + 0.1 * apart["lost"] + apart["knowing"]}
+    weights = {"size": 1.0, "steady": 0.5, "memory": 1.0, "crossed": 0.3, "lost": 0.1, "knowing": 1.0}
+    return apart | {"all": sum(weights[name] * value for name, value in apart.items())}
 
 
 def _ratio(one: Float, other: Float) -> Float:
@@ -103,6 +109,13 @@ def _memory(told: Sequence[Errors], lag: int) -> Float:
             # By ranks: one wild error must not decide.
             out[joint] = np.mean([_rank_correlation(now[chosen, joint, axis], then[chosen, joint, axis]) for axis in range(2)])
     return out
+
+
+def _steady(errors: Errors) -> Float:
+    """(17,) of one stream."""
+    counted = (errors.found[:, None] & ~errors.crossed)[..., None]
+    mean = (errors.residual * counted).sum(axis=0) / np.maximum(counted.sum(axis=0), 1)
+    return np.asarray(np.linalg.norm(mean, axis=-1))
 
 
 def _rank_correlation(one: Float, other: Float) -> float:
