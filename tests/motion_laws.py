@@ -27,6 +27,7 @@ class Measured:
         sunk_mm: skin under the floor, above 0.
         floating_mm: lowest skin of a foot that is said to stand, over the floor.
         off_parabola_mm: centre of mass in flight against free fall.
+        pull, push, shove: forces of the floor while something bears, in weights of the body: down (which no floor does), up, level.
         take_off_error_m_s: velocity of the centre of mass just before a flight against the flight's.
         beyond_limit_deg: joints against `models.body.limits`, and `beyond_limit_joint`.
         speed_rad_s, acceleration_rad_s2: of the joints, and which.
@@ -39,6 +40,9 @@ class Measured:
     floating_mm: float
     off_parabola_mm: float
     take_off_error_m_s: float
+    pull: float
+    push: float
+    shove: float
     beyond_limit_deg: float
     beyond_limit_joint: str
     speed_rad_s: float
@@ -57,7 +61,10 @@ def measured(motion: Motion, subject: Subject, every: int = 4) -> Measured:
     placed = figure.place(motion.translations_m, motion.rotations_rad)
     feet = motion.contacts[:, :2]
     sunk, floating = _skin(motion, subject, every)
-    off, jump = _flights(figure.centres_of_mass_m(placed), in_air(motion))
+    centre = figure.centres_of_mass_m(placed)
+    off, jump = _flights(centre, in_air(motion))
+    force = np.diff(centre, 2, axis=0) * RATE_HZ**2 / GRAVITY_M_S2 + np.array((0.0, 0.0, 1.0))
+    borne = force[~in_air(motion)[1:-1]]
     excess = np.degrees(np.abs(excess_rad(motion.rotations_rad, limits_rad(subject.age_years)))).max(axis=(0, 2))
     local = rotations.matrices(motion.rotations_rad)
     spin = rotations.vectors(local[:-1].swapaxes(-1, -2) @ local[1:]) * RATE_HZ
@@ -70,6 +77,9 @@ def measured(motion: Motion, subject: Subject, every: int = 4) -> Measured:
         floating_mm=1000 * floating,
         off_parabola_mm=1000 * off,
         take_off_error_m_s=jump,
+        pull=float(-borne[:, 2].min()),
+        push=float(borne[:, 2].max()),
+        shove=float(np.linalg.norm(borne[:, :2], axis=1).max()),
         beyond_limit_deg=float(excess.max()),
         beyond_limit_joint=smpl.NAMES[int(excess.argmax())],
         speed_rad_s=float(speed.max()),
@@ -160,6 +170,8 @@ def assert_lawful(motion: Motion, subject: Subject, every: int = 4) -> None:
     assert found.floating_mm <= 5.0, found
     assert found.off_parabola_mm <= 5.0, found
     assert found.take_off_error_m_s <= 0.25, found
+    assert found.push <= 8.0, found
+    assert found.shove <= 4.0, found
     assert found.beyond_limit_deg <= 2.0, found
     assert found.speed_rad_s <= 80.0, found
     assert found.acceleration_rad_s2 <= 20_000.0, found

@@ -15,7 +15,7 @@ from models.motions.perform import perform
 from models.motions.performance import AMPLITUDE, SEVERITY, TEMPO, Performance
 from models.motions.subject import Subject
 from tests.action_measures import MEASURES, Seen
-from tests.motion_laws import assert_lawful
+from tests.motion_laws import assert_lawful, measured
 from tests.pupils import pupil, some_pupil
 
 UPRIGHT = tuple(MEASURES)
@@ -49,6 +49,17 @@ SUBJECTS = st.builds(
 def test_feet_stand_bodies_fly_and_joints_turn_as_they_can(action: str) -> None:
     subject = pupil(10, "female")
     assert_lawful(perform(Performance(action), subject), subject, every=12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("age", [7, 12, 30])
+@pytest.mark.parametrize("action", UPRIGHT)
+def test_the_floor_bears_the_body_and_never_holds_it_down(action: str, age: float) -> None:
+    subject = pupil(age, "male")
+    found = measured(perform(Performance(action), subject), subject, every=1000)
+    assert found.pull < 0.1
+    assert found.push < 4.5
+    assert found.shove < 2.0
 
 
 @pytest.mark.slow

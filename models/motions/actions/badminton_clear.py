@@ -63,7 +63,7 @@ def _feet(line: Timeline, times: tuple[float, ...], turn: float, amplitude: floa
     start, back, drive, hit, through, rested, end = times
     stride = 0.5 * amplitude
     turned = start + 0.58 * (back - start)
-    line.step("right", start, turned, (-stride, -0.08), yaw=7 + 62 * turn, height=0.07)
+    line.step("right", start, turned, (-stride, -0.08), yaw=7 + 50 * turn, height=0.07)
     line.step("left", turned + 0.02, back - 0.02, (0.08, 0.02), yaw=7 - 34 * turn, height=0.04)
     line.step("right", drive + 0.06, through, (0.42 * amplitude, -0.04), yaw=20, height=0.1)
     line.step("right", rested, rested + 0.54 * (end - rested), (0.0, 0.0), yaw=7, height=0.06)
@@ -72,11 +72,11 @@ def _feet(line: Timeline, times: tuple[float, ...], turn: float, amplitude: floa
     line.pitch(through, "left", 25.0)
     line.pitch(rested, "left", 12.0)
     line.stand(start - 0.05)
-    line.key(back, Body(at=(-0.36 * amplitude, -0.07), height=0.94))
-    line.key(drive, Body(at=(-0.33 * amplitude, -0.06), height=0.93))
-    line.key(hit, Body(at=(0.06, 0.05), height=1.01))
-    line.key(through, Body(at=(0.24 * amplitude, 0.0), height=0.94))
-    line.key(rested, Body(at=(0.22 * amplitude, -0.01), height=0.95))
+    line.key(back, Body(at=(-0.33 * amplitude, -0.07), height=0.94))
+    line.key(drive, Body(at=(-0.27 * amplitude, -0.05), height=0.935))
+    line.key(hit, Body(at=(0.0, 0.04), height=1.0))
+    line.key(through, Body(at=(0.2 * amplitude, 0.0), height=0.95))
+    line.key(rested, Body(at=(0.22 * amplitude, -0.01), height=0.955))
 
 
 def _trunk(line: Timeline, times: tuple[float, ...], turn: float, amplitude: float) -> None:
@@ -101,7 +101,7 @@ def _racket_arm(line: Timeline, times: tuple[float, ...], faults: tuple[float, f
     # The elbow leads: it goes up and to the front while the racket still falls behind the back.
     reach = np.array((0.36, 0.34, 1.0)) * (1 - 0.45 * low) + np.array((0.8, 0.8, 0.0)) * 0.45 * low
     lead = np.array((-0.02, 0.95, 0.38 - 0.3 * low))
-    line.key(hit - 0.064, right_arm=Arm(_direction(lead), (-0.16, -0.6, 0.8), 124 * bent, -30, -34, 22, 75))
+    line.key(hit - 0.064, right_arm=Arm(_direction(lead), (0.0, -0.62, 0.78), 124 * bent, -30, -34, 22, 75))
     line.key(hit, right_arm=Arm(_direction(reach), (-0.2, -0.9, 0.35), 30 + 50 * low, 5, -4, -18, 75))
     line.key(hit + 0.022, right_arm=Arm((0.72, 0.2, 0.95 - 0.6 * low), (-0.15, -0.9, 0.4), 9 + 50 * low, 22, 12, -24, 75))
     line.key(hit + 0.08, right_arm=Arm((0.95, 0.0, 0.3 - 0.2 * low), (-0.05, -0.9, 0.7), 16 + 35 * low, 40, 22, -10, 75))

@@ -27,6 +27,8 @@ _SUPPORT: Final = 1.52
 _END: Final = 1.95
 """Where the support foot is put down and where he comes to stand, in leg lengths from the start."""
 _LEAP_S: Final = 0.12
+_BEHIND: Final = 0.26
+"""How far behind its place the support foot is put at severity 1, in leg lengths."""
 
 
 def perform(performance: Performance, subject: Subject) -> Motion:
@@ -56,7 +58,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
 
 def _run_up(line: Timeline, times: tuple[float, ...], performance: Performance) -> None:
     start, first, second, planted, hit, high, landed, end = times
-    behind = 0.26 * performance.severity("support_foot_behind")
+    behind = _BEHIND * performance.severity("support_foot_behind")
     off = planted - _LEAP_S
     line.step("left", start + 0.06, first, (0.42, 0.0), yaw=4, height=0.08, pitch=-10, heel=20)
     line.step("right", first + 0.03, second, (0.9, -0.02), yaw=5, height=0.09, pitch=-8, heel=42)
@@ -70,9 +72,9 @@ def _run_up(line: Timeline, times: tuple[float, ...], performance: Performance) 
     line.key(second, Body(at=(0.7, 0.01), height=0.955))
     line.key(off, Body(at=(0.93 - 0.3 * back, 0.02), height=0.975))
     line.key(planted, Body(at=(1.1 - back, 0.03), height=0.96))
-    line.key(hit, Body(at=(1.28 - back, 0.08), height=0.965, gaze=(-6, 42)))
-    line.key(high, Body(at=(1.46 - back, 0.08), height=0.99, gaze=(-3, 18)))
-    line.key(landed, Body(at=(1.78, -0.01), height=0.95, gaze=(0, 4)))
+    line.key(hit, Body(at=(1.28 - back, 0.08), height=0.96, gaze=(-6, 42)))
+    line.key(high, Body(at=(1.46 - back, 0.08), height=0.965, gaze=(-3, 18)))
+    line.key(landed, Body(at=(1.78 - 0.7 * behind, -0.01), height=0.95, gaze=(0, 4)))
     line.pitch(hit, "left", 0.0)
     line.pitch(high, "left", 24.0)
     line.pitch(landed - 0.04, "left", 26.0)
@@ -82,8 +84,9 @@ def _kicking_leg(line: Timeline, times: tuple[float, ...], performance: Performa
     _, _, _, planted, hit, high, landed, _ = times
     back = max(performance.amplitude - 0.55 * performance.severity("no_backswing"), -0.05)
     on = max(performance.amplitude - 0.75 * performance.severity("no_follow_through"), -0.2)
-    reach = 0.35 * 0.26 * performance.severity("support_foot_behind")
-    line.swing("right", planted - _LEAP_S, landed, (_END - 0.02, -0.03), yaw=8, pitch=0)
+    behind = _BEHIND * performance.severity("support_foot_behind")
+    reach = 0.35 * behind
+    line.swing("right", planted - _LEAP_S, landed, (_END - 0.02 - 0.7 * behind, -0.03), yaw=8, pitch=0)
     line.key(planted - _LEAP_S, right_leg=Leg((-0.42, 0.04, -1.0), 30, 5, 45))
     line.key(planted - 0.03, right_leg=Leg((-0.4, 0.1, -1.0), 40 + 26 * back, 6, 34))
     line.key(planted + 0.05, right_leg=Leg((0.1 - 0.6 * back, 0.14, -1.0), 8 + 94 * back, 8, 30))
