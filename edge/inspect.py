@@ -13,6 +13,7 @@ from edge.check import NETWORKS, check_video, film_of
 from edge.footage.index import INDEX_NAME, Index, remedy
 from edge.perception.network_file import read_network_file
 from edge.simulation.files import FOLDER as LESSONS
+from edge.simulation.files import SHIPPED
 from models.camera.rig import Rig
 from models.config.site import CameraConfig, Site
 from models.errors import UserError
@@ -52,8 +53,8 @@ def _networks(data: Path) -> Iterator[Inspected]:
 
 
 def _footage(data: Path) -> Iterator[Inspected]:
-    """The films that were prepared or rendered, whichever site plays them."""
-    for file in sorted([*data.glob(f"footage*/{INDEX_NAME}"), *data.glob(f"{LESSONS}/*/{INDEX_NAME}")]):
+    """The films that the set-up has prepared, whichever site plays them."""
+    for file in sorted([*data.glob(f"footage*/{INDEX_NAME}"), *data.glob(f"{LESSONS}/{SHIPPED}/{INDEX_NAME}")]):
         index = Index.read(file.parent)
         harmed = [INDEX_NAME] if index is None else index.damaged(file.parent)
         fault = f"{file.parent / harmed[0]} is missing or damaged; {remedy(file.parent)}" if harmed else ""
