@@ -9,9 +9,10 @@ import numpy as np
 from edge.simulation.shutter import Shutter
 from models.arrays import Float
 from models.body.model import Body
+from models.body.pose import Pose
 from models.camera.pinhole import Camera
 from models.camera.rig import Rig
-from models.motions.motion import RATE_HZ, Motion
+from models.motions.motion import RATE_HZ
 from models.skeleton import coco
 from services.fusion.governor import turn_offset_ns
 from tests.twin.truth import VELOCITY_SPAN_S, Truth
@@ -21,7 +22,7 @@ SAMPLES_HZ = RATE_HZ / 2
 
 
 class Performer(Protocol):
-    """Somebody who moves; every `edge.simulation.scene.Pupil` is one, with his stature beside."""
+    """Somebody who moves."""
 
     @property
     def stature_m(self) -> float:
@@ -31,12 +32,23 @@ class Performer(Protocol):
         """(17 or more, 3) COCO points in the world at a time of the lesson, before its beginning and after its end, too."""
 
 
+class Moves(Protocol):
+    """Poses over time: a `models.motions.motion.Motion`, or a `models.motions.sequence.Sequence` of half an hour."""
+
+    @property
+    def duration_s(self) -> float:
+        """Until the last pose."""
+
+    def pose_at(self, t_s: float) -> Pose:
+        """From 0 to `duration_s`."""
+
+
 @dataclass(frozen=True, eq=False)
 class MotionPerformer:
     """A body that performs a motion, and stands still before and after it."""
 
     body: Body
-    motion: Motion
+    motion: Moves
 
     @property
     def stature_m(self) -> float:
@@ -44,14 +56,13 @@ class MotionPerformer:
         return self.body.stature_m
 
     def coco_m(self, t_s: float) -> Float:
-        """(23, 3) COCO points and points of the feet; `t_s` counts to the nearest pose of the motion."""
-        number = min(max(round(t_s * RATE_HZ), 0), len(self.motion.translations_m) - 1)
-        return self.body.coco_m(self.motion.pose(number))
+        """(23, 3) COCO points and points of the feet."""
+        return self.body.coco_m(self.motion.pose_at(min(max(t_s, 0.0), self.motion.duration_s)))
 
 
 @dataclass(frozen=True, eq=False)
 class PlainPerformer:
-    """Anything that moves by a function of time."""
+    """Anything that moves by a function of time, such as `coco_m` of a simulated lesson's pupil."""
 
     stature_m: float
     points_m: Callable[[float], Float]
