@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from edge.simulation.scene import Actor
+from edge.simulation.scene import Actor, Pupil
 from edge.simulation.shutter import Shutter
 from models.arrays import Float
 
@@ -86,6 +86,8 @@ class Courses:
         self._actors = actors
         self._taken: tuple[float, Shutter] | None = None
         self._courses: list[Course | None] = []
+        self._points_taken: tuple[float, Shutter] | None = None
+        self._points: dict[str, Course] = {}
 
     def at(self, t_s: float, shutter: Shutter) -> list[Course | None]:
         """Through a picture at `t_s`, in the order of the actors; None for who is not there."""
@@ -93,3 +95,17 @@ class Courses:
             self._courses = [course_of(actor, t_s, shutter) for actor in self._actors]
             self._taken = t_s, shutter
         return self._courses
+
+    def of_points(self, pupil: Pupil, t_s: float, shutter: Shutter) -> Course:
+        """Of a pupil's 24 joints and 23 COCO points, through a picture at `t_s`."""
+        if self._points_taken != (t_s, shutter):
+            self._points = {}
+            self._points_taken = t_s, shutter
+        if pupil.name not in self._points:
+            self._points[pupil.name] = course_through(lambda when: points_m(pupil, when), t_s, shutter)
+        return self._points[pupil.name]
+
+
+def points_m(pupil: Pupil, t_s: float) -> Float:
+    """(47, 3) joints, then COCO points."""
+    return np.concatenate((pupil.joints_m(t_s), pupil.coco_m(t_s)))

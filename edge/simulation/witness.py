@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from edge.simulation.course import Course, Courses, course_through, places_at
+from edge.simulation.course import Course, Courses, places_at, points_m
 from edge.simulation.lens import Lens, land
 from edge.simulation.meshes import corners_of
 from edge.simulation.scene import Pupil, Scene
@@ -65,11 +65,10 @@ class Witness:
         )
 
     def _pupil(self, pupil: Pupil, t_s: float) -> "_Found":
-        points = course_through(lambda when: np.concatenate((pupil.joints_m(when), pupil.coco_m(when))), t_s, self._shutter)
+        points = self._courses.of_points(pupil, t_s, self._shutter)
         pixels, depths, times = self._land(points)
         pose = pupil.pose(t_s)
-        now = np.concatenate((pupil.joints_m(t_s), pupil.coco_m(t_s)))
-        return _Found(pose.translation_m, pose.rotations_rad, now, places_at(points, times), pixels, depths)
+        return _Found(pose.translation_m, pose.rotations_rad, points_m(pupil, t_s), places_at(points, times), pixels, depths)
 
     def _seen(self, landed: list[tuple[Float, Float, Float] | None], pixels: Float, depths: Float) -> UInt8:
         """(P, K) `Seen`."""
