@@ -22,7 +22,7 @@ from models.motions.vocabulary import Arm, Body
 
 STILL_S: Final = 0.1
 """At the beginning and at the end: the corners of words are rounded, and the last pose shall be `stand`."""
-_TURN_DEG: Final = 50.0
+_TURN_DEG: Final = 60.0
 """The most that one step turns."""
 _TURN_S: Final = 0.42
 _WORTH_JOGGING: Final = 2.5
