@@ -2,6 +2,7 @@
 
 import cv2
 import numpy as np
+from scipy.spatial import cKDTree
 
 from edge.simulation.surface import Faces, Surface, Texture
 from models.arrays import Bool, Float, Float32, UInt8
@@ -72,21 +73,21 @@ def texels(texture: Texture) -> UInt8:
     return np.ascontiguousarray(cv2.cvtColor(np.ascontiguousarray(texture.picture), cv2.COLOR_RGB2RGBA))
 
 
-def near_rim(faces: Counts, rings: int) -> Bool:
-    """(F,) whether a triangle is at most so many triangles away from an edge that has nothing on its other side.
+def near_rim(vertices_m: Float, faces: Counts, within_m: float) -> Bool:
+    """(F,) whether a triangle is near an edge that has no triangle on its other side.
 
     Only there may the inner side of a surface be seen: in a sleeve's end, not in the middle of a body.
 
     Args:
+        vertices_m: (V, 3).
         faces: (F, 3) of welded vertices.
-        rings: how many.
+        within_m: how near.
     """
-    count = int(faces.max()) + 1
+    count = len(vertices_m)
     ends = np.concatenate((faces[:, :2], faces[:, 1:], faces[:, ::2][:, ::-1])).astype(np.int64)
     ways, back = ends[:, 0] * count + ends[:, 1], ends[:, 1] * count + ends[:, 0]
-    alone = ends[(ends[:, 0] != ends[:, 1]) & ~np.isin(ways, back)]
-    near = np.zeros(count, np.bool_)
-    near[alone] = True
-    for _ in range(rings - 1):
-        near[faces[near[faces].any(1)]] = True
+    rim = np.unique(ends[(ends[:, 0] != ends[:, 1]) & ~np.isin(ways, back)])
+    if not len(rim):
+        return np.zeros(len(faces), np.bool_)
+    near = cKDTree(vertices_m[rim]).query(vertices_m)[0] <= within_m
     return np.asarray(near[faces].any(1))

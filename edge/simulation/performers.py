@@ -17,7 +17,7 @@ from models.arrays import Float, Float32
 if TYPE_CHECKING:
     import moderngl
 
-_RINGS = 3
+_SLEEVE_M = 0.12
 """How deep one looks into a sleeve."""
 _MARGIN_PX = 3
 _EVERY = 11
@@ -52,7 +52,7 @@ class Performer:
             (gl.buffer(texture_places(surface).tobytes()), "2f", "uv"),
         ]
         self._outside = gl.vertex_array(program, layout, index_buffer=gl.buffer(self.faces.tobytes()))
-        rim = self.faces[near_rim(self._welds[self.faces], _RINGS)]
+        rim = self.faces[near_rim(np.asarray(surface.vertices_m), self._welds[self.faces], _SLEEVE_M)]
         self._rim = gl.vertex_array(program, layout, index_buffer=gl.buffer(rim.tobytes())) if len(rim) else None
 
     def light(self, course: Course, lamps: Float, ambient: Float, eye_m: Float) -> None:
