@@ -7,7 +7,8 @@ import numpy as np
 
 from models.arrays import Bool, Float
 from models.body.limits import limits_rad
-from models.motions import rotations
+from models.compiled import Counts
+from models.motions import rotations, splines
 from models.motions.figure import Figure, Placed
 from models.motions.inverse_kinematics import limb_of, reach
 from models.skeleton import smpl
@@ -15,6 +16,8 @@ from models.skeleton import smpl
 FOREARM_TURN_RAD: Final = np.radians(75.0)
 """How far the forearm turns about itself for a hand; what is left is the wrist's."""
 _LIFTS: Final = 4
+_EASE: Final = 8
+"""Poses before and after, over which a hand is lifted that would be in the ground."""
 _FLOATS_M: Final = 0.001
 _WITHIN: Final = 0.98
 """A wrist that would have to bend further than it can leaves the palm a little off the ground."""
@@ -32,6 +35,8 @@ class Palm:
         yaw_rad: (T,) to where the fingers point, about z.
         bears: (T,) from 0, the arm as it was, to 1, the palm on the ground.
         out: where the elbow points when the hand bears, (T, 3) in the world, or None: where it pointed before.
+        points: on its way to the ground and from it the arm points to where the hand bears; or else it is held against the chest
+            as it is when the hand bears.
     """
 
     side: str
@@ -39,6 +44,7 @@ class Palm:
     yaw_rad: Float
     bears: Float
     out: Float | None = None
+    points: bool = True
 
 
 def flat(side: str, yaw_rad: Float) -> Float:
@@ -79,17 +85,30 @@ def bear(figure: Figure, palm: Palm, pelvis_m: Float, local: Float) -> Float:
     joints = [limb.root, limb.hinge, wrist, hand]
     shoulder = placed.turns[:, collar].swapaxes(-1, -2) @ upper
     bearing = np.stack((shoulder, bent @ rotations.about(1, turn), rest, np.broadcast_to(np.eye(3), rest.shape)), axis=1)
-    # On its way to the ground and from it, the arm is held against the chest as it was, or will be, when the hand bears.
-    most = np.flatnonzero(palm.bears >= palm.bears.max() - 1e-9)
-    times = np.arange(len(palm.bears))
-    after = np.clip(np.searchsorted(most, times), 0, len(most) - 1)
-    before = np.clip(after - 1, 0, None)
-    bearing = bearing[np.where(times - most[before] < most[after] - times, most[before], most[after])]
+    if not palm.points:
+        bearing = bearing[_nearest_that_bears(palm.bears)]
     share = np.broadcast_to(palm.bears[:, None], (len(to_end), len(joints)))
     used = palm.bears > 0
     local[:, joints] = np.where(used[:, None, None, None], rotations.between(local[:, joints], bearing, share), local[:, joints])
     now = figure.place_local(pelvis_m, local).joints_m[:, wrist]
     return np.asarray(np.linalg.norm(now - palm.wrist_m, axis=-1) * (palm.bears >= 1))
+
+
+def _eased(lift_m: Float) -> Float:
+    """(T,) no less, and without corners, so that an arm that is nearly straight does not jerk."""
+    if not lift_m.any():
+        return lift_m
+    most = np.max([np.roll(lift_m, step) for step in range(-_EASE, _EASE + 1)], axis=0)
+    return splines.softened(most, _EASE / 2)
+
+
+def _nearest_that_bears(bears: Float) -> Counts:
+    """(T,) number of the nearest pose in which the hand bears as much as it ever does."""
+    most = np.flatnonzero(bears >= bears.max() - 1e-9)
+    times = np.arange(len(bears))
+    after = np.clip(np.searchsorted(most, times), 0, len(most) - 1)
+    before = np.clip(after - 1, 0, None)
+    return np.where(times - most[before] < most[after] - times, most[before], most[after])
 
 
 def settle(figure: Figure, side: str, ground_m: float, bears: Bool, pelvis_m: Float, local: Float) -> None:
@@ -102,11 +121,12 @@ def settle(figure: Figure, side: str, ground_m: float, bears: Bool, pelvis_m: Fl
     for _ in range(_LIFTS):
         placed = figure.place_local(pelvis_m, local)
         low = lowest_m(figure, side, placed) - ground_m
-        sunk = np.flatnonzero((low < 0) | (bears & (low > _FLOATS_M)))
+        lift = np.where(bears, -low, _eased(np.maximum(-low, 0.0)))
+        sunk = np.flatnonzero(np.abs(lift) > np.where(bears, _FLOATS_M, 0.0))
         if not len(sunk):
             return
         target = placed.joints_m[sunk, wrist].copy()
-        target[:, 2] -= low[sunk]
+        target[:, 2] += lift[sunk]
         axis = rotations.through(placed.turns[sunk, limb.root], np.broadcast_to(limb.hinge_axis, target.shape))
         upper, bend = reach(limb, target - placed.joints_m[sunk, limb.root], axis)
         bent = rotations.about(limb.axis, limb.sense * bend)

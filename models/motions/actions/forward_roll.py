@@ -282,6 +282,7 @@ def _bear_on_hands(figure: Figure, course: _Course, way: _Way, side: str, pelvis
             np.full(count, -mirror * _FINGERS_IN_RAD),
             share * _while(times, from_s, to_s, 0.2),
             np.tile(out, (count, 1)),
+            points=False,
         )
         palms.bear(figure, palm, pelvis, local)
         palms.settle(figure, side, mat.HEIGHT_M, during & (share >= 1), pelvis, local)
