@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from edge.simulation.shell import Shell, selected, smoothed, within
+from edge.simulation.shell import Shell
 from models.arrays import Bool, Float
 from models.body.model import Body
 from models.body.pose import t_pose
@@ -100,18 +100,6 @@ class Anatomy:
     def armpit_z(self) -> float:
         """Underside of the arm where it leaves the chest."""
         return float(self.joint("left_shoulder")[2] - 0.062 * self.scale)
-
-    @cached_property
-    def outside(self) -> Shell:
-        """The skin without eyes and cavities, for clothes; its `uv` carries nothing."""
-        keep = ~self.part("eyes", "cavities")
-        return selected(self.skin, within(self.skin, keep))
-
-    @cached_property
-    def calm_normals(self) -> Float:
-        """(V, 3) of `skin`, without its small forms."""
-        calm = smoothed(self.skin.normals, self.skin.faces, 4)
-        return np.asarray(calm / np.maximum(np.linalg.norm(calm, axis=1, keepdims=True), 1e-12))
 
     @cached_property
     def _points(self) -> Float:
