@@ -151,6 +151,10 @@ motions: build/motions/.ready ## Export the recorded motion anew (it is in the r
 check-motions: build/motions/.ready ## Compare the recorded motion with a fresh export
 	build/motions/bin/python -m models.motions.build.export --check
 
+.PHONY: strips
+strips: $(VENV)/.ready ## Film every action with its faults anew, for docs/actions
+	$(PYTHON) -m edge.simulation.strip
+
 lock: ## Compile requirements.lock anew after a change of pyproject.toml
 	$(PYTHON) -m venv build/lock && build/lock/bin/pip install --quiet uv
 	build/lock/bin/uv pip compile pyproject.toml --extra web --extra dev --universal --python-version 3.11 \
