@@ -57,9 +57,9 @@ def shot_no_knee_bend(seen: Seen) -> float:
 
 
 def shot_no_follow_through(seen: Seen) -> float:
-    """How far the wrist is under the height of the release's, 0.3 s later."""
+    """How far the wrist is under the height of the release's, 0.42 s later; against the head."""
     wrist = (seen.joint("right_wrist") - seen.joint("head"))[:, 2]
-    return float(wrist[seen.peak] - wrist[seen.peak + round(0.3 * RATE_HZ)])
+    return float(wrist[seen.peak] - wrist[seen.peak + round(0.42 * RATE_HZ)])
 
 
 def shot_ball_from_chest(seen: Seen) -> float:

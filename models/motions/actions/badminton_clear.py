@@ -64,7 +64,7 @@ def _feet(line: Timeline, times: tuple[float, ...], turn: float, amplitude: floa
     stride = 0.5 * amplitude
     turned = start + 0.58 * (back - start)
     line.step("right", start, turned, (-stride, -0.08), yaw=7 + 50 * turn, height=0.07)
-    line.step("left", turned + 0.02, back - 0.02, (0.08, 0.02), yaw=7 - 34 * turn, height=0.04)
+    line.step("left", turned + 0.02, back - 0.02, (0.08, 0.02), yaw=7 - 29 * turn, height=0.04)
     line.step("right", drive + 0.06, through, (0.42 * amplitude, -0.04), yaw=20, height=0.1)
     line.step("right", rested, rested + 0.54 * (end - rested), (0.0, 0.0), yaw=7, height=0.06)
     line.step("left", rested + 0.56 * (end - rested), end - 0.04, (0.0, 0.0), yaw=7, height=0.05)
@@ -86,7 +86,7 @@ def _trunk(line: Timeline, times: tuple[float, ...], turn: float, amplitude: flo
     line.key(drive + 0.5 * (hit - drive), Body(facing=-30 * turn, twist=-27 * turn))
     line.key(hit - 0.06, Body(twist=-20 * turn))
     line.key(hit, Body(facing=6, twist=8, lean=0, bow=-12, tip=4, gaze=(2, -38)))
-    line.key(through, Body(facing=17, twist=22, lean=14 * amplitude, bow=-4, tip=12, gaze=(0, -10)))
+    line.key(through, Body(facing=14, twist=24, lean=14 * amplitude, bow=-4, tip=12, gaze=(0, -10)))
     line.key(rested, Body(facing=9, twist=8, lean=6, bow=0, tip=6, gaze=(0, -8)))
 
 

@@ -40,7 +40,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
     second = first + natural.seconds(0.31)
     planted = snapped(second + natural.seconds(0.31))
     hit = snapped(planted + natural.seconds(0.185))
-    high = hit + natural.seconds(0.17)
+    high = hit + natural.seconds(0.18 * performance.amplitude)
     landed = high + natural.seconds(0.3)
     end = landed + natural.seconds(0.85)
     times = (start, first, second, planted, hit, high, landed, end)
