@@ -17,7 +17,7 @@ from models.arrays import Float, Float32
 if TYPE_CHECKING:
     import moderngl
 
-_SLEEVE_M = 0.12
+_SLEEVE_M = 0.08
 """How deep one looks into a sleeve."""
 _MARGIN_PX = 3
 _EVERY = 11

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from edge.simulation.scene import Actor, Pupil, Scene
 from edge.simulation.visibility import first_surfaces
@@ -19,6 +20,9 @@ from models.skeleton.smpl import INDEX
 CELL_M = 0.04
 HIGHEST_M = 1.3
 """What is higher is no ground to throw a shadow on."""
+Millimetres = npt.NDArray[np.int16]
+MOST_MM = 32000
+NO_GROUND = -32768
 _ABOVE_M = 10.0
 _REACH_M = 0.8
 _LAMP_WIDTH = 0.12
@@ -180,12 +184,12 @@ def _shade(light: Float32, heights: Float, start: Float, cell: float, spheres: F
 
 
 @compiled
-def darken(picture: Float32, ground: Float32, light: Float32, origin: Float, cell: float) -> None:
+def darken(picture: Float32, ground: Millimetres, light: Float32, origin: Float, cell: float) -> None:
     """Darken pixels that show the ground.
 
     Args:
         picture: (h, w, 3) linear light; is changed.
-        ground: (h, w, 2) x and y of the ground in each pixel; NaN where there is other than ground.
+        ground: (h, w, 2) x and y of the ground in each pixel, millimetres; `NO_GROUND` where there is other than ground.
         light: (rows, columns) share of the light that is left in each cell.
         origin: (2,) middle of the first cell.
         cell: side of a cell, metres.
@@ -193,8 +197,8 @@ def darken(picture: Float32, ground: Float32, light: Float32, origin: Float, cel
     rows, columns = light.shape
     for y in range(picture.shape[0]):
         for x in range(picture.shape[1]):
-            across = (ground[y, x, 0] - origin[0]) / cell
-            down = (ground[y, x, 1] - origin[1]) / cell
+            across = (ground[y, x, 0] / 1e3 - origin[0]) / cell
+            down = (ground[y, x, 1] / 1e3 - origin[1]) / cell
             if not (across >= 0 and down >= 0 and across < columns - 1 and down < rows - 1):
                 continue
             column, row = np.int64(across), np.int64(down)

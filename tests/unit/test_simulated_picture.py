@@ -10,6 +10,7 @@ from edge.simulation.dense import DensePainter
 from edge.simulation.renderer import Renderer, View
 from edge.simulation.scene import Scene
 from edge.simulation.sensor import Sensor
+from edge.simulation.shadows import NO_GROUND
 from edge.simulation.shutter import Shutter
 from models.arrays import Bool
 from models.camera.pinhole import Camera
@@ -111,7 +112,7 @@ def test_pupils_are_seen_where_the_mask_has_them_and_nowhere_else() -> None:
     assert inner.sum() > 3000
     assert np.mean(changed[inner] > 0.05) > 0.97
     # Off the ground, where no shadow is.
-    walls = outer & np.isnan(sharp.room.ground[..., 0])
+    walls = outer & (sharp.room.ground[..., 0] == NO_GROUND)
     assert walls.sum() > 30000
     assert changed[walls].max() < 1e-6
     # One pupil's legs are behind the screen, of which something is seen.
@@ -132,7 +133,7 @@ def test_a_ball_on_the_floor_stands_on_its_shadow_and_one_in_the_air_hardly_cast
         share = np.where(floor, picture.sum(-1) / view.room.light.sum(-1), 1.0)
         darkest[height] = float(share.min())
         assert share.max() < 1 + 1e-5
-        ground = view.room.ground
+        ground = view.room.ground / 1e3
         far = (np.hypot(ground[..., 0], ground[..., 1]) > 1.5) & floor
         assert far.sum() > 5000
         assert share[far].min() > 0.995
