@@ -106,7 +106,7 @@ def idle_time(seconds: float, where: Callable[[np.random.Generator], Standpoint]
     while left > 0:
         if generator.random() < 0.4:
             acts.append(Go(where(generator), bool(generator.random() < 0.3), int(generator.integers(2**31))))
-            left -= 5.0
+            left -= _GO_S
             continue
         how = PASTIMES[int(generator.choice(len(PASTIMES), p=_HOW_OFTEN))]
         took = max(LEAST_S[how], float(generator.gamma(4.0, 1.0)))
@@ -115,6 +115,8 @@ def idle_time(seconds: float, where: Callable[[np.random.Generator], Standpoint]
     return acts
 
 
+_GO_S: Final = 6.5
+"""What a way across a gym takes, on average."""
 _HOW_OFTEN: Final = (0.34, 0.12, 0.12, 0.1, 0.1, 0.08, 0.07, 0.07)
 
 

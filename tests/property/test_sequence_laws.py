@@ -20,7 +20,7 @@ BEGINNING = Pose(np.array((0.0, 0.0, 0.9)), np.random.default_rng(1).normal(0, 0
 
 places = st.builds(Standpoint, st.floats(-9, 9), st.floats(-9, 9), st.floats(-9, 9))
 seeds = st.integers(0, 2**20)
-few = settings(max_examples=10)
+few = settings(max_examples=6)
 
 
 def some_motion(seed: int) -> Motion:

@@ -20,8 +20,8 @@ from models.skeleton import smpl
 from tests.pupils import pupil, some_pupil
 
 HERE = Standpoint(2.0, -1.0, 0.7)
-QUICK = ("wait", "bend")
-"""The pastimes that the fast tests look at; the others take as long and are like them."""
+QUICK = ("bend",)
+"""The pastime that the fast tests look at; the others take as long and are like it."""
 EVERY_S = 12
 """Samples between those on which the skin is looked at."""
 
@@ -77,8 +77,8 @@ def assert_ends_standing(motion: Motion, subject: Subject, at: Standpoint) -> No
 @pytest.mark.parametrize("how", [pytest.param(how, marks=[pytest.mark.slow] if how not in QUICK else []) for how in PASTIMES])
 def test_passing_time_keeps_the_feet_where_they_are_and_ends_on_time(how: Pastime) -> None:
     subject = pupil()
-    motion, skin = with_skin(Pass(how, 3.0, seed=1), subject)
-    assert motion.duration_s == pytest.approx(3.0, abs=0.5 / RATE_HZ)
+    motion, skin = with_skin(Pass(how, 2.6, seed=1), subject)
+    assert motion.duration_s == pytest.approx(2.6, abs=0.5 / RATE_HZ)
     assert motion.attempts == ()
     assert_obeys_the_floor(motion, skin, subject)
     assert_is_human(motion, subject, fastest_m_s=10.0)
@@ -92,7 +92,7 @@ def test_passing_time_keeps_the_feet_where_they_are_and_ends_on_time(how: Pastim
 
 @pytest.mark.parametrize(
     ("to", "jogs"),
-    [(Standpoint(1.4, -0.6, 1.2), False), pytest.param(Standpoint(6.0, -3.0, 2.0), True, marks=pytest.mark.slow)],
+    [(Standpoint(2.9, -0.4, 0.7), False), pytest.param(Standpoint(6.0, -3.0, 2.0), True, marks=pytest.mark.slow)],
 )
 def test_going_somewhere_arrives_there(to: Standpoint, jogs: bool) -> None:
     subject = pupil()
@@ -135,7 +135,7 @@ def test_walking_speed_and_steps_grow_with_the_leg() -> None:
 
 
 def test_a_seed_gives_one_wait_and_another_seed_another() -> None:
-    one, again, other = (spend(Pass("wait", 1.2, seed), pupil(), HERE) for seed in (1, 1, 2))
+    one, again, other = (spend(Pass("wait", 1.8, seed), pupil(), HERE) for seed in (1, 1, 2))
     np.testing.assert_array_equal(one.rotations_rad, again.rotations_rad)
     assert np.abs(one.rotations_rad - other.rotations_rad).max() > 0.05
 
@@ -163,7 +163,7 @@ def test_idle_time_is_long_enough_varied_and_seeded() -> None:
     assert acts != idle_time(1800.0, anywhere, seed=6)
     assert {act.how for act in acts if isinstance(act, Pass)} == set(PASTIMES)
     assert {act.jogs for act in acts if isinstance(act, Go)} == {True, False}
-    assert 1600 < sum(act.seconds if isinstance(act, Pass) else 5.0 for act in acts) < 2000
+    assert 1700 < sum(act.seconds if isinstance(act, Pass) else 6.5 for act in acts) < 1900
 
 
 @pytest.mark.slow

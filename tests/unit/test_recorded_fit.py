@@ -94,6 +94,7 @@ def test_a_fit_gives_shape_and_pose_back() -> None:
     assert errors[:, limbs].max() < 0.03
 
 
+@pytest.mark.slow
 def test_gaps_and_a_marker_that_flies_off_do_not_move_the_body() -> None:
     body, poses, markers = recording(OPENCAP, 0.6, seed=4)
     clean = joint_errors_m(fitted(markers), body, poses)
