@@ -45,15 +45,10 @@ def errors(lesson: Lesson, looked: dict[str, Looked], network: Name, turn: Turn)
     found = []
     for camera in lesson.rig:
         truth = lesson.pictures[camera.name]
-        actions = tuple(action_at(lesson, float(t)) for t in truth.times_s)
+        actions = tuple(lesson.action_at(float(t)) for t in truth.times_s)
         of_height = errors_of_height(lesson, camera, looked[camera.name])
         found.append(Errors(network, turn, camera.name, lesson.seed, lesson.pupil, of_height, truth.visible, actions))
     return found
-
-
-def action_at(lesson: Lesson, t_s: float) -> str:
-    """What is done at an instant; empty between attempts."""
-    return next((span.action for span in lesson.spans if span.begin_s <= t_s <= span.end_s), "")
 
 
 def within5_pct(chosen: Sequence[Errors], actions: Sequence[str]) -> float:
@@ -73,7 +68,7 @@ def bias_looks(lesson: Lesson, looked: dict[str, Looked], wanted: Callable[[str]
     found = []
     for camera in lesson.rig:
         truth, said = lesson.pictures[camera.name], looked[camera.name]
-        chosen = np.array([wanted(action_at(lesson, float(t))) for t in truth.times_s], np.bool_)
+        chosen = np.array([wanted(lesson.action_at(float(t))) for t in truth.times_s], np.bool_)
         counts = truth.visible & (np.nan_to_num(said.scores) >= _BELIEVED) & chosen[:, None]
         found.append(Looks(camera, said.points_px, truth.points_m, counts))
     return found

@@ -70,3 +70,7 @@ class Lesson:
     truth_m: Callable[[Float], Float]
     stature_m: float = float("nan")
     pictures: dict[str, PictureTruth] = field(default_factory=dict)
+
+    def action_at(self, t_s: float) -> str:
+        """What is done at an instant; empty between attempts."""
+        return next((span.action for span in self.spans if span.begin_s <= t_s <= span.end_s), "")

@@ -103,7 +103,7 @@ def judged(lesson: Lesson, way: Way, upright: tuple[str, ...], seen: Observed) -
     if every_frame:
         further |= _against_each_frame(rig, seen, fused, looks, lesson, upright)
     points, scores = (by_frame if every_frame else interpolated)(looks, len(fused.times_s))
-    actions = tuple(_action_at(lesson, float(t)) for t in fused.times_s)
+    actions = tuple(lesson.action_at(float(t)) for t in fused.times_s)
     clip = Clip(rig, points, scores, fused.times_s, lesson.truth_m(fused.times_s), actions, fused.smooth_m)
     return Measured(
         lesson=lesson.name,
@@ -172,7 +172,3 @@ class Interpolated:
         share = (place - before)[:, None, None]
         joints = (1 - share) * self.fused.smooth_m[before] + share * self.fused.smooth_m[before + 1]
         return np.where((share >= 0) & (share <= 1), joints, np.nan)
-
-
-def _action_at(lesson: Lesson, t_s: float) -> str:
-    return next((span.action for span in lesson.spans if span.begin_s <= t_s <= span.end_s), "")
