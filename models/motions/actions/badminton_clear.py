@@ -28,6 +28,7 @@ _SHAFT: Final = np.array((0.45, -0.89, 0.0))
 """Of the racket in the right hand's frame: between the thumb's side and the fingers."""
 _STRINGS: Final = np.array((0.0, 0.0, -1.0))
 """To where the strings look: as the palm does."""
+_DRIVE_S: Final = 0.3
 _COMING_M_S: Final = np.array((-2.6, 0.0, -5.6))
 _CLEARED_M_S: Final = np.array((17.0, 0.5, 13.0))
 
@@ -43,7 +44,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
     start = 0.2
     back = start + natural.seconds(0.62)
     drive = back + natural.seconds(0.22)
-    hit = snapped(drive + natural.seconds(0.3))
+    hit = snapped(drive + natural.seconds(_DRIVE_S))
     through = hit + natural.seconds(0.26)
     rested = through + natural.seconds(0.3)
     end = rested + natural.seconds(0.75)
@@ -81,10 +82,11 @@ def _feet(line: Timeline, times: tuple[float, ...], turn: float, amplitude: floa
 
 def _trunk(line: Timeline, times: tuple[float, ...], turn: float, amplitude: float) -> None:
     back, drive, hit, through, rested = times
+    quick = (hit - drive) / _DRIVE_S
     line.key(back, Body(facing=-56 * turn, twist=-20 * turn, lean=-5, bow=6, tip=-3, gaze=(0, -38)))
     line.key(drive, Body(facing=-54 * turn, twist=-27 * turn, lean=-9 * amplitude, bow=9, tip=-3, gaze=(0, -42)))
     line.key(drive + 0.5 * (hit - drive), Body(facing=-30 * turn, twist=-27 * turn))
-    line.key(hit - 0.06, Body(twist=-20 * turn))
+    line.key(hit - 0.06 * quick, Body(twist=-20 * turn))
     line.key(hit, Body(facing=6, twist=8, lean=0, bow=-12, tip=4, gaze=(2, -38)))
     line.key(through, Body(facing=14, twist=24, lean=14 * amplitude, bow=-4, tip=12, gaze=(0, -10)))
     line.key(rested, Body(facing=9, twist=8, lean=6, bow=0, tip=6, gaze=(0, -8)))
@@ -92,6 +94,7 @@ def _trunk(line: Timeline, times: tuple[float, ...], turn: float, amplitude: flo
 
 def _racket_arm(line: Timeline, times: tuple[float, ...], faults: tuple[float, float, float]) -> None:
     start, back, drive, hit, through, rested = times
+    quick = (hit - drive) / _DRIVE_S
     low, stiff, stopped = faults[0], faults[1], min(faults[2], 1.2)
     bent = max(1.0 - 0.66 * stiff, 0.03)
     ready = Arm((-0.3, 0.85, 0.05 + 0.1 * bent), (0.2, 0.0, 1.0), 92 * bent, -5, -15, 10, 70)
@@ -101,10 +104,10 @@ def _racket_arm(line: Timeline, times: tuple[float, ...], faults: tuple[float, f
     # The elbow leads: it goes up and to the front while the racket still falls behind the back.
     reach = np.array((0.36, 0.34, 1.0)) * (1 - 0.45 * low) + np.array((0.8, 0.8, 0.0)) * 0.45 * low
     lead = np.array((-0.02, 0.95, 0.38 - 0.3 * low))
-    line.key(hit - 0.064, right_arm=Arm(_direction(lead), (0.0, -0.62, 0.78), 124 * bent, -30, -34, 22, 75))
+    line.key(hit - 0.064 * quick, right_arm=Arm(_direction(lead), (0.0, -0.62, 0.78), 124 * bent, -30, -34, 22, 75))
     line.key(hit, right_arm=Arm(_direction(reach), (-0.2, -0.9, 0.35), 30 + 50 * low, 5, -4, -18, 75))
-    line.key(hit + 0.022, right_arm=Arm((0.72, 0.2, 0.95 - 0.6 * low), (-0.15, -0.9, 0.4), 9 + 50 * low, 22, 12, -24, 75))
-    line.key(hit + 0.08, right_arm=Arm((0.95, 0.0, 0.3 - 0.2 * low), (-0.05, -0.9, 0.7), 16 + 35 * low, 40, 22, -10, 75))
+    line.key(hit + 0.022 * quick, right_arm=Arm((0.72, 0.2, 0.95 - 0.6 * low), (-0.15, -0.9, 0.4), 9 + 50 * low, 22, 12, -24, 75))
+    line.key(hit + 0.08 * quick, right_arm=Arm((0.95, 0.0, 0.3 - 0.2 * low), (-0.05, -0.9, 0.7), 16 + 35 * low, 40, 22, -10, 75))
     after = np.array((0.62, -0.38, -0.6)) * max(1 - stopped, -0.2) + np.array((0.95, 0.25, 0.25)) * stopped
     line.key(through, right_arm=Arm(_direction(after), (0.3, -0.6, 0.75), 40 + 25 * stopped, 40, 10, 0, 72))
     line.key(rested, right_arm=Arm((0.45, 0.05, -0.85), (0.8, -0.5, 0.3), 60, 20, 0, 0, 60))

@@ -27,6 +27,8 @@ _SETTER_M: Final = np.array((1.3, 1.6, 0.0))
 """From below the hit to where the set comes from, along and across."""
 _SET_S: Final = 0.95
 _SPIKED_M_S: Final = np.array((13.0, 0.6, -4.0))
+_AIRBORNE_S: Final = 0.43
+"""For which the arms' times are said; who is in the air for less is as much quicker."""
 _LANDING: Final = 1.62
 """Where the feet land, in leg lengths from the start."""
 _DIP: Final = 0.82
@@ -97,37 +99,39 @@ def _flight(line: Timeline, times: tuple[float, ...], single: float) -> None:
 
 def _trunk(line: Timeline, times: tuple[float, ...], behind: float) -> None:
     first, second, bottom, off, hit, on, settled = times
+    quick = (on - off) / _AIRBORNE_S
     line.key(first, Body(tip=8, lean=4, facing=0, twist=0))
     line.key(second, Body(tip=12, lean=8, facing=-12, twist=-4))
     line.key(bottom, Body(tip=20, lean=14, facing=-18, twist=-4))
     line.key(off, Body(tip=0, lean=-6, facing=-18, twist=-10, bow=2))
-    line.key(hit - 0.09, Body(tip=-4, lean=-13, facing=-16, twist=-24, bow=4, gaze=(0, -34)))
+    line.key(hit - 0.09 * quick, Body(tip=-4, lean=-13, facing=-16, twist=-24, bow=4, gaze=(0, -34)))
     line.key(hit, Body(tip=2, lean=-3 - 12 * behind, facing=-2, twist=8, bow=-8, gaze=(0, -34 - 8 * behind)))
-    line.key(hit + 0.12, Body(tip=12, lean=16 - 14 * behind, facing=8, twist=18, bow=-2, gaze=(0, -4)))
+    line.key(hit + 0.12 * quick, Body(tip=12, lean=16 - 14 * behind, facing=8, twist=18, bow=-2, gaze=(0, -4)))
     line.key(on, Body(tip=8, lean=14 - 6 * behind, facing=8, twist=12, bow=0))
     line.key(settled, Body(tip=18, lean=12, facing=2, twist=4, gaze=(0, 0)))
 
 
 def _arms(line: Timeline, times: tuple[float, ...], faults: tuple[float, float]) -> None:
     first, second, bottom, off, hit, on, settled = times
-    forward, behind = faults[0], min(faults[1], 1.6)
+    forward, behind = faults[0], min(faults[1], 1.2)
+    quick = (on - off) / _AIRBORNE_S
     line.arms(first, Arm((0.35, 0.15, -1.0), (1.0, -0.3, 0.3), 35, 15, 0, 0, 15))
     line.arms(second - 0.06, Arm((-0.75, 0.28, -0.65), (1.0, -0.2, -0.2), 14, 20, 0, 0, 12))
     line.arms(second + 0.03, Arm((-0.7, 0.28, -0.7), (1.0, -0.2, -0.2), 14, 20, 0, 0, 12))
     line.arms(bottom + 0.035, Arm((0.15, 0.2, -1.0), (1.0, -0.3, 0.2), 22, 15, 0, 0, 12))
-    line.key(off + 0.035, left_arm=Arm((0.95, 0.25, 0.35), (0.1, -0.3, 1.0), 40, 10, 0, 0, 8))
-    line.key(off + 0.035, right_arm=Arm((0.8, 0.45, 0.2), (0.2, -0.2, 1.0), 75, 5, -10, 0, 8))
-    line.key(hit - 0.11, left_arm=Arm((0.85, 0.2, 0.75), (0.1, -0.3, 1.0), 22, 15, 0, 0, 6))
-    line.key(hit + 0.02, left_arm=Arm((0.6, 0.3, -0.5), (0.8, -0.4, 0.6), 80, 10, 0, 0, 20))
-    line.key(hit + 0.2, left_arm=Arm((0.1, 0.35, -0.95), (1.0, -0.4, 0.2), 60, 10, 0, 0, 20))
+    line.key(off + 0.035 * quick, left_arm=Arm((0.95, 0.25, 0.35), (0.1, -0.3, 1.0), 40, 10, 0, 0, 8))
+    line.key(off + 0.035 * quick, right_arm=Arm((0.8, 0.45, 0.2), (0.2, -0.2, 1.0), 75, 5, -10, 0, 8))
+    line.key(hit - 0.11 * quick, left_arm=Arm((0.85, 0.2, 0.75), (0.1, -0.3, 1.0), 22, 15, 0, 0, 6))
+    line.key(hit + 0.02 * quick, left_arm=Arm((0.6, 0.3, -0.5), (0.8, -0.4, 0.6), 80, 10, 0, 0, 20))
+    line.key(hit + 0.2 * quick, left_arm=Arm((0.1, 0.35, -0.95), (1.0, -0.4, 0.2), 60, 10, 0, 0, 20))
     cocked = (-0.4 + 1.2 * forward, 0.85 - 0.3 * forward, 0.3 - 0.2 * forward)
-    line.key(hit - 0.13, right_arm=Arm(cocked, (0.0, -0.15, 1.0), 98, -5, -18, 0, 8))
-    line.key(hit - 0.062, right_arm=Arm((0.1 + 0.6 * forward, 0.92, 0.5), (0.0, -0.62, 0.78), 122, -20, -28, 0, 8))
-    at_hit = (0.4 - 0.7 * behind, 0.3, 1.0)
+    line.key(hit - 0.13 * quick, right_arm=Arm(cocked, (0.0, -0.15, 1.0), 98, -5, -18, 0, 8))
+    line.key(hit - 0.062 * quick, right_arm=Arm((0.1 + 0.6 * forward, 0.92, 0.5), (0.0, -0.62, 0.78), 122, -20, -28, 0, 8))
+    at_hit = (0.4 - 0.58 * behind, 0.3, 1.0)
     line.key(hit, right_arm=Arm(at_hit, (-0.2, -0.9, 0.35), 24, 4, -4, 0, 4))
-    line.key(hit + 0.024, right_arm=Arm((0.72 - 0.6 * behind, 0.2, 0.9), (-0.15, -0.9, 0.4), 9, 14, 20, 0, 6))
-    line.key(hit + 0.085, right_arm=Arm((0.95, 0.02, 0.25), (-0.05, -0.9, 0.7), 14, 30, 26, 0, 12))
-    line.key(hit + 0.2, right_arm=Arm((0.55, -0.05, -0.8), (0.5, -0.6, 0.5), 30, 25, 8, 0, 18))
+    line.key(hit + 0.024 * quick, right_arm=Arm((0.72 - 0.5 * behind, 0.2, 0.9), (-0.15, -0.9, 0.4), 9, 14, 20, 0, 6))
+    line.key(hit + 0.085 * quick, right_arm=Arm((0.95, 0.02, 0.25), (-0.05, -0.9, 0.7), 14, 30, 26, 0, 12))
+    line.key(hit + 0.2 * quick, right_arm=Arm((0.55, -0.05, -0.8), (0.5, -0.6, 0.5), 30, 25, 8, 0, 18))
     line.arms(on + 0.08, Arm((0.3, 0.4, -0.85), (1.0, -0.3, 0.2), 45, 15, 0, 0, 18))
     line.arms(settled, Arm((0.35, 0.35, -0.9), (1.0, -0.3, 0.2), 50, 15, 0, 0, 18))
 
