@@ -9,7 +9,7 @@ from edge.simulation.lens import lens_of
 from edge.simulation.scene import Scene
 from edge.simulation.shutter import Shutter
 from edge.simulation.truth import Truth
-from edge.simulation.visibility import Seen, reach_m
+from edge.simulation.visibility import Seen, first_surfaces, judge, reach_m
 from edge.simulation.witness import Witness
 from models.arrays import Float
 from tests.synthetic.moving_scene import Flinger, look_at, moving_scene
@@ -122,3 +122,39 @@ def test_a_pupil_behind_the_camera_is_outside() -> None:
     assert (away.joints_seen == Seen.OUTSIDE).all()
     assert np.isnan(away.boxes_px).all()
     assert np.isfinite(away.coco_m).all()
+
+
+def test_what_is_just_before_the_skin_hides_and_the_own_skin_does_not() -> None:
+    # A point 4 m away, 5 cm below the skin of pupil 1 of 2; then one thing, then the room.
+    cases = [
+        (1, 3.95, Seen.VISIBLE),  # his own skin
+        (1, 3.70, Seen.BEHIND_ITSELF),  # his own arm
+        (0, 3.93, Seen.BEHIND_PUPIL),  # another's hand on him
+        (2, 3.93, Seen.BEHIND_THING),
+        (3, 3.0, Seen.BEHIND_ROOM),
+        (3, 3.995, Seen.VISIBLE),  # the floor that his sole touches
+        (0, 4.5, Seen.VISIBLE),  # somebody behind him, where clothes leave the point bare
+        (-1, np.inf, Seen.VISIBLE),
+    ]
+    owners, first = np.array([owner for owner, _, _ in cases]), np.array([depth for _, depth, _ in cases])
+    count = len(cases)
+    found = judge(1, np.full(count, 4.0), np.full(count, 0.1), first, owners, 2, 1)
+    assert found.tolist() == [seen for _, _, seen in cases]
+
+
+def test_the_first_surface_is_the_nearest_that_covers_the_pixel() -> None:
+    generator = np.random.default_rng(2)
+    corners = generator.uniform(-40, 240, (300, 2))
+    depths = generator.uniform(1, 9, 300)
+    faces = generator.permutation(300).reshape(-1, 3)
+    queries = generator.uniform(0, 199, (400, 2))
+    first, found = np.full(400, np.inf), np.full(400, -1)
+    first_surfaces(corners, depths, faces, 7, queries, first, found, 200, 200)
+    expected = np.full(400, np.inf)
+    for a, b, c in faces:
+        shares = np.linalg.solve(np.vstack((corners[[a, b, c]].T, np.ones(3))), np.vstack((queries.T, np.ones(400))))
+        depth = 1 / (shares.T @ (1 / depths[[a, b, c]]))
+        expected = np.where((shares >= 0).all(0), np.minimum(expected, depth), expected)
+    assert np.isfinite(expected).sum() > 200
+    assert np.allclose(first, expected)
+    assert np.array_equal(found, np.where(np.isfinite(expected), 7, -1))
