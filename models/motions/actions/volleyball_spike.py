@@ -124,9 +124,12 @@ def _arms(line: Timeline, times: tuple[float, ...], faults: tuple[float, float])
     line.key(hit - 0.11 * quick, left_arm=Arm((0.85, 0.2, 0.75), (0.1, -0.3, 1.0), 22, 15, 0, 0, 6))
     line.key(hit + 0.02 * quick, left_arm=Arm((0.6, 0.3, -0.5), (0.8, -0.4, 0.6), 80, 10, 0, 0, 20))
     line.key(hit + 0.2 * quick, left_arm=Arm((0.1, 0.35, -0.95), (1.0, -0.4, 0.2), 60, 10, 0, 0, 20))
-    cocked = (-0.4 + 1.2 * forward, 0.85 - 0.3 * forward, 0.3 - 0.2 * forward)
+    cocked = (-0.4 + 1.3 * forward, 0.85 - 0.4 * forward, 0.3 - 0.2 * forward)
     line.key(hit - 0.13 * quick, right_arm=Arm(cocked, (0.0, -0.15, 1.0), 98, -5, -18, 0, 8))
-    line.key(hit - 0.062 * quick, right_arm=Arm((0.1 + 0.6 * forward, 0.92, 0.5), (0.0, -0.62, 0.78), 122, -20, -28, 0, 8))
+    line.key(
+        hit - 0.062 * quick,
+        right_arm=Arm((0.1 + 0.7 * forward, 0.92 - 0.35 * forward, 0.5), (0.0, -0.62, 0.78), 122, -20, -28, 0, 8),
+    )
     at_hit = (0.4 - 0.58 * behind, 0.3, 1.0)
     line.key(hit, right_arm=Arm(at_hit, (-0.2, -0.9, 0.35), 24, 4, -4, 0, 4))
     line.key(hit + 0.024 * quick, right_arm=Arm((0.72 - 0.5 * behind, 0.2, 0.9), (-0.15, -0.9, 0.4), 9, 14, 20, 0, 6))
