@@ -20,7 +20,7 @@ class Answer(NamedTuple):
 
     Attributes:
         begins: a segment begins, for which fusion needs a new state.
-        again: parts to be published once more, in this order.
+        again: parts to be published, in this order: those that were missed, or what the segment that ends still holds.
     """
 
     begins: bool = False
@@ -65,11 +65,12 @@ class SegmentLog:
             return Answer(again=self._missed(request.sequence, now_ns))
         if request.t_ns <= self._request_ns and request.segment_ns < self._segment_ns:
             return Answer()  # A repetition: its segment has begun, of which the recorder had not heard yet.
+        rest = (self._collected(),) if self._entries else ()
         self._request_ns = request.t_ns
         self._segment_ns, self._sequence = now_ns, 0
         self._kept.clear()
         self._begin_part(now_ns)
-        return Answer(begins=True)
+        return Answer(begins=True, again=rest)
 
     def add(self, kind: EntryKind, t_ns: int, payload: bytes = b"") -> None:
         """Something was taken in or given out."""
@@ -81,7 +82,7 @@ class SegmentLog:
         """The next part, if it is due. Call it often."""
         if not self.running or (now_ns - self._part_ns < PART_NS and self._bytes < MAX_PART_BYTES):
             return None
-        part = FusionLog(self._segment_ns, self._sequence, tuple(self._entries))
+        part = self._collected()
         self._keep(_Kept(part, now_ns, self._bytes))
         self._sequence += 1
         self._begin_part(now_ns)
@@ -89,6 +90,9 @@ class SegmentLog:
             self._request_ns = 0
             self._kept.clear()
         return part
+
+    def _collected(self) -> FusionLog:
+        return FusionLog(self._segment_ns, self._sequence, tuple(self._entries))
 
     def _keep(self, newest: _Kept) -> None:
         self._kept.append(newest)

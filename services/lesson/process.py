@@ -1,5 +1,6 @@
 """The recorder process: parts of fusion's log and people's wishes in; files, requests to fusion and health out."""
 
+import time
 from pathlib import Path
 
 import structlog
@@ -10,6 +11,7 @@ from models.messages.lesson import FusionLog, LessonRequest
 from models.messages.trouble import messages_refused
 from models.process import Delivery, ProcessContext
 from services.lesson import origin
+from services.lesson.asking import Asking
 from services.lesson.folder_lock import lock
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.recorder import Recorder
@@ -22,7 +24,7 @@ from services.support.version import kinebox_version
 
 KEEP = 64
 """Unread parts: fusion sends up to 40 (20 s) again in one go, and new ones come in between."""
-_ROUND_S = 0.25
+_ROUND_S = 0.1
 
 log = structlog.get_logger()
 
@@ -52,9 +54,10 @@ class RecorderLoop:
         with getting_ready(context.name, self._bus, "lessons that were cut short are completed"):
             unfinished = recover(folder, context.start_ns)
         self._recorder = Recorder(folder, context.site.lessons, self._header, unfinished)
+        self._asking = Asking()
 
     def run(self) -> None:
-        """Take what comes; once a second, ask fusion for its log while recording, and say how things are."""
+        """Take what comes; ask fusion for its log while recording; once a second, say how things are."""
         self._bus.declare_alive(topics.alive(self._context.name))
         try:
             while not self._context.stop.is_set():
@@ -63,6 +66,8 @@ class RecorderLoop:
                     self._receive(delivery)
                 if self._reporter.due():
                     self._second_passed()
+                if self._asking.due(time.monotonic_ns()):
+                    self._ask()
         finally:
             self._recorder.close()
             self._subscription.close()
@@ -71,6 +76,7 @@ class RecorderLoop:
         try:
             if delivery.topic == topics.fusion_log():
                 self._recorder.take(codec.decode(delivery.payload, FusionLog))
+                self._asking.heard(time.monotonic_ns())
                 return
             wish = codec.decode(delivery.payload, LessonRequest)
         except codec.CodecError as error:
@@ -83,11 +89,15 @@ class RecorderLoop:
         else:
             self._recorder.stop()
         self._second_passed()  # Who wished it is waiting to hear that it was done.
+        self._ask()
 
-    def _second_passed(self) -> None:
-        request = self._recorder.look_after()
+    def _ask(self) -> None:
+        request = self._recorder.request
         if request is not None:
             self._bus.publish(topics.segment_request(), codec.encode(request))
+
+    def _second_passed(self) -> None:
+        self._recorder.look_after()
         refused = messages_refused(self._rejected) if self._rejected else None
         troubles = tuple(filter(None, (self._recorder.trouble, refused)))
         self._rejected = 0

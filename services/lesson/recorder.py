@@ -138,25 +138,28 @@ class Recorder:
         if accepted.gap:
             log.warning("gap in the lesson", lesson=_name(running.writer), reason=accepted.gap)
 
-    def look_after(self) -> SegmentRequest | None:
-        """Once a second: watch disk and file, begin what is automatic. Returns what fusion shall be asked for, if anything."""
+    @property
+    def request(self) -> SegmentRequest | None:
+        """What fusion shall be asked for; None while nothing is recorded."""
+        return None if self._running is None else self._running.following.request
+
+    def look_after(self) -> None:
+        """Once a second: watch disk and file, begin what is automatic."""
         if self._running is None and self._automatic_ns is not None and self._clock_ns() >= self._automatic_ns:
             self.start(AUTOMATIC_TITLE)
         if self._running is None:
-            return None
+            return
         try:
             in_place = self._running.writer.in_place
         except OSError as error:
             self._finish(error.strerror or str(error), _MEND)
-            return None
+            return
         if not in_place:
             self._finish()
-            return None
+            return
         free_mb = self._free_mb()
         if free_mb < self._config.least_free_mb:
             self._finish(self._too_full(free_mb), _REMOVE)
-            return None
-        return self._running.following.request
 
     @property
     def trouble(self) -> Trouble | None:

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from models.config.site import LessonsConfig
+from models.messages.lesson import SegmentRequest
 from models.messages.trouble import one_line
 from services.lesson import recorder as module
 from services.lesson.folder_lock import lock
@@ -29,8 +30,13 @@ class Room:
         config = LessonsConfig(automatic=automatic)
         return Recorder(self.folder, config, self._header, unfinished, lambda: self.now_ns)
 
+    def asks(self) -> SegmentRequest | None:
+        """What fusion is asked for once the recorder has looked after its disk."""
+        self.recorder.look_after()
+        return self.recorder.request
+
     def record(self, parts: int) -> None:
-        request = self.recorder.look_after()
+        request = self.asks()
         assert request is not None
         for k in range(request.sequence, request.sequence + parts):
             self.now_ns += SECOND_NS // 2

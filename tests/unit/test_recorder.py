@@ -31,7 +31,7 @@ def automatic_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[
 
 
 def test_nothing_is_recorded_and_fusion_is_asked_for_nothing_before_somebody_wishes_it(room: Room) -> None:
-    assert room.recorder.look_after() is None
+    assert room.asks() is None
     room.recorder.take(part(BEGIN_NS + 1, 0))
     assert room.recorder.health().lesson == ""
     assert room.files(PART_SUFFIX) == room.files(SUFFIX) == []
@@ -46,7 +46,7 @@ def test_a_lesson_is_recorded_from_start_to_stop(room: Room) -> None:
     (written,) = room.folder.glob(f"*{PART_SUFFIX}")
     assert health.size_bytes == written.stat().st_size > 0
     room.recorder.stop()
-    assert room.recorder.look_after() is None
+    assert room.asks() is None
     (name,) = room.files(SUFFIX)
     with open_lesson(room.folder / name) as lesson:
         assert lesson.summary().parts == 4
@@ -64,7 +64,7 @@ def test_the_same_request_is_repeated_so_that_fusion_goes_on(room: Room) -> None
     room.recorder.start("one")
     room.record(parts=2)
     room.now_ns += 5 * SECOND_NS
-    assert room.recorder.look_after() == SegmentRequest(BEGIN_NS, BEGIN_NS + 1, 2)
+    assert room.asks() == SegmentRequest(BEGIN_NS, BEGIN_NS + 1, 2)
 
 
 def test_a_lost_part_is_asked_for_and_a_gap_in_the_file_only_if_fusion_does_not_have_it_any_more(room: Room) -> None:
@@ -137,7 +137,7 @@ def test_a_lesson_that_the_recorders_death_cut_short_is_gone_on_with(room: Room,
     room.now_ns += 3 * SECOND_NS
     room.recorder = room.started(recover(room.folder, header().run_ns))
     assert room.recorder.health().lesson == name
-    assert room.recorder.look_after() == SegmentRequest(room.now_ns, BEGIN_NS + 1, 2)
+    assert room.asks() == SegmentRequest(room.now_ns, BEGIN_NS + 1, 2)
     if kept:
         room.record(parts=2)
     else:
@@ -154,7 +154,7 @@ def test_an_automatic_recorder_begins_by_itself_and_stops_for_good_when_told_to(
     assert room.recorder.health().title == module.AUTOMATIC_TITLE
     room.recorder.stop()
     room.now_ns += 2 * RETRY_NS
-    assert room.recorder.look_after() is None
+    assert room.asks() is None
 
 
 @pytest.mark.parametrize(

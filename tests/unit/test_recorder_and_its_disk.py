@@ -37,7 +37,7 @@ def test_a_disk_that_fills_up_ends_the_lesson_cleanly_and_says_so(room: Room) ->
     room.recorder.start("one")
     room.record(parts=3)
     room.free_mb = 499.0
-    assert room.recorder.look_after() is None
+    assert room.asks() is None
     assert "499 MB are left on the disk, lessons.least_free_mb is 500" in room.trouble
     (name,) = room.files(SUFFIX)
     with open_lesson(room.folder / name) as lesson:
@@ -108,7 +108,7 @@ def test_a_lesson_whose_file_is_not_there_any_more_ends_within_a_second_and_nobo
     room.record(parts=3)
     lesson = room.recorder.health().lesson
     file = vanish(room, how)
-    assert room.recorder.look_after() is None
+    assert room.asks() is None
     assert room.recorder.health().lesson == ""
     assert f"lesson {lesson} ended: its file was removed, renamed or replaced" in room.trouble
     assert "make room" not in room.trouble
@@ -136,7 +136,7 @@ def test_after_the_folder_was_moved_away_the_next_lesson_makes_it_anew(room: Roo
     room.recorder.start("one")
     room.record(parts=1)
     vanish(room, "folder moved away")
-    assert room.recorder.look_after() is None
+    assert room.asks() is None
     room.recorder.start("two")
     assert room.trouble == ""
     room.record(parts=2)
@@ -162,7 +162,7 @@ def test_a_lesson_whose_file_cannot_be_looked_at_ends_with_the_reason_and_comes_
 
     with monkeypatch.context() as pulled:
         pulled.setattr(Path, "stat", stat)
-        assert room.recorder.look_after() is None
+        assert room.asks() is None
         assert room.recorder.health().lesson == ""
         assert f"lesson {lesson} ended: {os.strerror(code)}" in room.trouble
     room.recorder.start("two")
@@ -201,7 +201,7 @@ def test_a_lesson_that_a_person_ended_is_never_gone_on_with_even_if_it_could_not
         assert recover(room.folder, header().run_ns) is None, "nor while it still cannot be finished"
     room.recorder = room.started(recover(room.folder, header().run_ns))
     assert room.recorder.health().lesson == ""
-    assert room.recorder.look_after() is None
+    assert room.asks() is None
     assert (room.files(PART_SUFFIX), room.files(SUFFIX)) == ([], [f"{name}{SUFFIX}"])
     with open_lesson(room.folder / f"{name}{SUFFIX}") as lesson:
         assert lesson.summary().parts == 2
@@ -219,9 +219,9 @@ def test_a_lesson_that_was_ended_before_its_first_part_is_never_gone_on_with(roo
 def test_an_automatic_recorder_waits_until_there_is_room_again(automatic_room: Room) -> None:
     room = automatic_room
     room.free_mb = 1.0
-    assert room.recorder.look_after() is None
+    assert room.asks() is None
     room.free_mb = 10_000.0
-    assert room.recorder.look_after() is None
+    assert room.asks() is None
     room.now_ns += RETRY_NS
-    assert room.recorder.look_after() is not None
+    assert room.asks() is not None
     assert room.trouble == ""

@@ -40,6 +40,17 @@ def test_a_repeated_request_begins_nothing_and_a_later_one_does() -> None:
     assert (part.segment_ns, part.sequence, part.entries) == (NOW_NS + 3, 0, ())
 
 
+def test_what_a_segment_still_holds_is_given_out_when_the_next_one_begins() -> None:
+    log = SegmentLog()
+    log.ask(SegmentRequest(NOW_NS), NOW_NS)
+    assert log.part(NOW_NS + PART_NS) is not None
+    log.add("tick", NOW_NS + PART_NS + 1)
+    answer = log.ask(SegmentRequest(NOW_NS + PART_NS + 2, 12345), NOW_NS + PART_NS + 3)  # by a damaged message, for instance
+    assert answer.begins
+    (rest,) = answer.again
+    assert (rest.segment_ns, rest.sequence, rest.entries) == (NOW_NS, 1, (Entry("tick", NOW_NS + PART_NS + 1, b""),))
+
+
 def test_the_log_stops_when_the_recorder_is_gone_and_its_request_begins_anew_when_it_is_back() -> None:
     log = SegmentLog()
     request = SegmentRequest(NOW_NS)
