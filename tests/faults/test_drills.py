@@ -82,6 +82,6 @@ def test_a_storm_of_crashes_stops_at_its_limit_and_is_said(tmp_path: Path) -> No
         until(given_up, f"{name} to be given up", 120.0)
         assert len(pids) == 3, "the first start and two restarts"
         camera = next(each for each in stage.client.status()["cameras"] if each["name"] == VICTIM)
-        assert (camera["state"], camera["reason"]) == ("lost", "failed")
+        assert (camera["state"], camera["reason"]) == ("lost", "given_up")
         assert "ended 3 times within 600 s" in camera["detail"]
         stage.client.wait_figure(time.monotonic())  # the others go on
