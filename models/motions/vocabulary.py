@@ -5,7 +5,9 @@ body's middle, so that the same words serve both sides. Their length does not ma
 """
 
 from dataclasses import dataclass
+from typing import Literal
 
+Side = Literal["left", "right"]
 Direction = tuple[float, float, float]
 
 
