@@ -13,8 +13,8 @@ from edge.simulation.plan import PLAN_VERSION, PerformancePlan, Plan, PupilPlan,
 from edge.simulation.split import Split, generator
 from models.motions.performance import AMPLITUDE
 
-_START_M: Final = (-1.5, -0.95)
-_BACK_DEG: Final = 158.0
+_START_M: Final = (-1.5, -1.1)
+_BACK_DEG: Final = 152.0
 SIX_ACTIONS: Final = ("volleyball_spike", "basketball_shot", "badminton_clear", "long_jump", "soccer_kick", "forward_roll")
 """In the order in which a pupil performs them in the acting area: there along one side, then he turns, and back to the mat."""
 _TURNS_BEFORE: Final = "soccer_kick"
