@@ -3,32 +3,45 @@ SHELL := /bin/bash
 .DELETE_ON_ERROR:
 MAKEFLAGS += --no-builtin-rules
 
-SOURCE ?= footage
+SOURCE ?= simulated
 DATA   ?= build
 SITE   ?= deploy/sites/$(SOURCE)/site.toml
+# Figures of the running box are compared over months: on the same film.
+BENCH_SITE ?= deploy/sites/footage/site.toml
 SHARED ?= ../shared/data
 
 ifneq ($(words $(DATA)),1)
 $(error DATA is '$(DATA)': make knows no folder with a space in its name; name another folder)
 endif
 
+FOOTAGES := footage footage2
+FILM_OF_simulated := $(DATA)/simulated/six_actions/installed.json
+FILM_OF_footage   := $(DATA)/footage/installed.json
+FILM_OF_footage2  := $(DATA)/footage2/installed.json
+FILMS := $(FILM_OF_simulated) $(FILM_OF_footage) $(FILM_OF_footage2)
+
 VENV   := .venv
 PYTHON := $(VENV)/bin/python
 WEB    := services/tablet/web
-export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
+# For `make bench-reconstruct DATASET=h36m PATH=folder`, PATH is the user's folder and not where programs are.
+ifeq ($(origin PATH),command line)
+DATASET_PATH := $(PATH)
+override PATH := /usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
+endif
+override export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks footage web bytecode kernels body check-body motions check-motions lock clean distclean test-faults test-mutations bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons
+.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions lock clean distclean test-faults test-mutations bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-networks
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
 
-run: setup ## Start KineBox on the built-in footage and print the address of the page
+run: setup ## Start KineBox on the built-in lesson (SOURCE=footage or footage2: films of people) and print the address of the page
 	@exec kinebox run --site $(SITE) --data $(DATA)
 
-test: setup $(DATA)/footage/installed.json $(DATA)/footage2/installed.json ## Every test: unit, property, golden, real sockets and processes, the page in Chromium
+test: setup $(FILMS) ## Every test: unit, property, golden, real sockets and processes, the page in Chromium
 	@$(MAKE) --no-print-directory lint
 	cd $(WEB) && npm run --silent check && npm test
 	$(PYTHON) -m pytest -n 4 --dist loadfile # most tests wait, for processes and deadlines
@@ -44,7 +57,7 @@ lint: $(VENV)/.ready
 	lint-imports
 	mypy
 
-setup: $(VENV)/.ready networks footage web bytecode kernels ## Install everything that the two commands need
+setup: $(VENV)/.ready networks film web bytecode kernels ## Install everything that the two commands need
 
 $(VENV)/.ready: requirements.lock pyproject.toml deploy/setup/check-machine
 	@deploy/setup/check-machine
@@ -59,8 +72,15 @@ $(DATA)/networks/installed.json: models/networks/manifest.toml $(wildcard models
 	@$(PYTHON) -m models.networks.build.install --data $(DATA)
 	@touch $@
 
-FOOTAGES := footage footage2
-footage: $(patsubst %,$(DATA)/%/installed.json,$(filter $(SOURCE),$(FOOTAGES))) ## Fetch and prepare the built-in footage that SOURCE names
+.PHONY: film
+film: $(FILM_OF_$(SOURCE)) # what SOURCE plays, if it is built in
+
+simulated: $(FILM_OF_simulated) ## Prepare the built-in simulated lesson
+$(FILM_OF_simulated): edge/simulation/shipped.py edge/simulation/shipped_worker.py $(wildcard edge/simulation/six_actions/*) | $(VENV)/.ready
+	@$(PYTHON) -m edge.simulation.shipped --data $(DATA)
+	@touch $@
+
+footage: $(FILM_OF_$(filter footage%,$(SOURCE))) ## Fetch and prepare the built-in footage that SOURCE names
 $(FOOTAGES:%=$(DATA)/%/installed.json): $(wildcard edge/footage/*.py) | $(VENV)/.ready
 	@$(PYTHON) -m edge.footage.prepare --data $(DATA) --name $(notdir $(@D))
 	@touch $@
@@ -89,23 +109,23 @@ $(DATA)/kernels/.ready: models/compiled.py $(wildcard services/fusion/*.py) | $(
 	@$(PYTHON) -c "from services.fusion.warm_up import warm_up; warm_up()"
 	@touch $@
 
-test-faults: setup ## The box killed, stopped and starved: every fault drill once, on the real processes
+test-faults: setup $(FILM_OF_footage) ## The box killed, stopped and starved: every fault drill once, on the real processes
 	$(PYTHON) -m pytest -m faults tests/faults
 
 test-mutations: setup ## 100,000 mutated messages on each topic and on the tablet's socket
 	$(PYTHON) -m pytest -m mutations tests/mutations
 
-bench-faults: setup ## Recovery and lost recording over 20 runs of each fault drill; some 45 minutes (--drills, --runs in ARGS)
+bench-faults: setup $(FILM_OF_footage) ## Recovery and lost recording over 20 runs of each fault drill; some 45 minutes (--drills, --runs in ARGS)
 	$(PYTHON) -m tests.bench.faults --data $(DATA) $(ARGS)
 
-bench-start: setup ## Seconds from the command to the figure in the browser, everything installed
-	$(PYTHON) -m tests.bench.start --site $(SITE) --data $(DATA)
+bench-start: setup $(FILM_OF_footage) ## Seconds from the command to the figure in the browser, everything installed
+	$(PYTHON) -m tests.bench.start --site $(BENCH_SITE) --data $(DATA)
 
-bench-box: setup ## Live rate, latency, CPU and memory of the whole box, 300 s and at half the CPU
-	$(PYTHON) -m tests.bench.box --site $(SITE) --data $(DATA)
+bench-box: setup $(FILM_OF_footage) ## Live rate, latency, CPU and memory of the whole box, 300 s and at half the CPU
+	$(PYTHON) -m tests.bench.box --site $(BENCH_SITE) --data $(DATA)
 
-bench-lessons: setup ## What recording costs: the recorder's CPU, and the size of a lesson of 45 minutes
-	$(PYTHON) -m tests.bench.lessons --site $(SITE) --data $(DATA)
+bench-lessons: setup $(FILM_OF_footage) ## What recording costs: the recorder's CPU, and the size of a lesson of 45 minutes
+	$(PYTHON) -m tests.bench.lessons --site $(BENCH_SITE) --data $(DATA)
 
 build/peers/%/.ready: tests/bench/peers/%/requirements.lock | $(VENV)/.ready
 	@echo "Installing $* in an environment of its own (some minutes) ..."
@@ -113,14 +133,20 @@ build/peers/%/.ready: tests/bench/peers/%/requirements.lock | $(VENV)/.ready
 	@$(@D)/bin/pip install --disable-pip-version-check --quiet --require-hashes -r $<
 	@touch $@
 
-bench-footage: setup build/peers/pose2sim/.ready ## Accuracy on the built-in footage, beside Pose2Sim on the same keypoints
+bench-footage: setup $(FILM_OF_footage) build/peers/pose2sim/.ready ## Accuracy on the built-in footage, beside Pose2Sim on the same keypoints
 	$(PYTHON) -m tests.bench.footage --data $(DATA)
 
-bench-peers: setup build/peers/pose2sim/.ready build/peers/aniposelib/.ready ## Pose2Sim and aniposelib beside our fusion, on the same keypoints
+bench-peers: setup $(FILM_OF_footage) build/peers/pose2sim/.ready build/peers/aniposelib/.ready ## Pose2Sim and aniposelib beside our fusion, on the same keypoints
 	$(PYTHON) -m tests.bench.peers --data $(DATA)
 
-bench-footage2: setup $(DATA)/footage2/installed.json ## The pupil among two people, on the second built-in footage
+bench-footage2: setup $(FILM_OF_footage2) ## The pupil among two people, on the second built-in footage
 	$(PYTHON) -m tests.bench.footage2 --data $(DATA)
+
+bench-reconstruct: $(VENV)/.ready networks kernels build/peers/pose2sim/.ready build/peers/aniposelib/.ready ## Rendered lessons through the whole box, against their truth (ARGS=--full; or DATASET=h36m|panoptic|shelf PATH=folder)
+	$(PYTHON) -m tests.bench.reconstruct --data $(DATA) $(if $(DATASET),--dataset $(DATASET) --path "$(DATASET_PATH)") $(ARGS)
+
+bench-networks: $(VENV)/.ready networks kernels ## How well the pose networks see simulated pupils, and the landmark bias
+	$(PYTHON) -m tests.bench.networks --data $(DATA) $(ARGS)
 
 bench-shelf: $(VENV)/.ready ## Everyone on the Shelf data (SHARED, not part of the repository), beside a greedy baseline
 	$(PYTHON) -m tests.bench.shelf --data $(DATA) --shared $(SHARED)
@@ -164,4 +190,4 @@ clean: ## Remove what was built, but not the downloads' results
 	rm -rf $(WEB)/dist $(DATA)/kernels $(DATA)/bytecode.ready $(DATA)/bench $(DATA)/logs .mypy_cache .ruff_cache .pytest_cache
 
 distclean: clean ## Remove everything that was installed or downloaded, too
-	rm -rf $(VENV) $(DATA)/networks $(FOOTAGES:%=$(DATA)/%) build/peers build/lock build/body build/motions $(WEB)/node_modules *.egg-info .hypothesis .import_linter_cache
+	rm -rf $(VENV) $(DATA)/networks $(FOOTAGES:%=$(DATA)/%) $(DATA)/simulated build/peers build/lock build/body build/motions $(WEB)/node_modules *.egg-info .hypothesis .import_linter_cache

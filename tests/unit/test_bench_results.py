@@ -12,6 +12,7 @@ from tests.bench.networks.judge import errors, within5_pct
 from tests.bench.networks.looks import Looked, blazepose_points, crop_of
 from tests.bench.peers.score import Score
 from tests.bench.reconstruct import on_shelf
+from tests.bench.reconstruct.__main__ import main
 from tests.bench.reconstruct.against_peers import OURS, Standing, margin_figures, mean_mpjpe_mm, table_rows
 from tests.bench.reconstruct.lesson import UPRIGHT, Lesson
 from tests.bench.reconstruct.measure import UPRIGHT_MEAN, Measured, Way, judged
@@ -167,3 +168,25 @@ def test_blazeposes_landmarks_are_cocos_by_name() -> None:
 def test_a_folder_without_the_shelf_is_named(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"actorsGT\.mat"):
         on_shelf.run(tmp_path, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--dataset", "h36m"], "None is no folder"),
+        (["--dataset", "h36m", "--path", "/nowhere"], "/nowhere is no folder"),
+        (["--dataset", "h36m", "--path", "."], "camera-parameters.json is missing"),
+        (["--dataset", "panoptic", "--path", "."], "calibration_*.json"),
+        (["--dataset", "shelf", "--path", "."], "actorsGT.mat is missing"),
+    ],
+)
+def test_a_data_set_that_is_not_there_is_one_line_and_exit_code_two(
+    arguments: list[str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    if "h36m" in arguments:
+        np.savez(tmp_path / "data_3d_h36m.npz", positions_3d=np.array({}, dtype=object))
+    monkeypatch.setattr("sys.argv", ["bench-reconstruct", "--data", str(tmp_path), *arguments])
+    assert main() == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert words in line

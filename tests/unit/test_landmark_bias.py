@@ -8,12 +8,14 @@ import pytest
 from models.arrays import Float
 from models.messages.motion import JointState, Motion
 from models.skeleton import coco
+from models.skeleton.landmark_bias import THUNDER
 from models.skeleton.segment_axes import segment_axes, trunk_length_m
 from services.fusion.config import PRESETS, FusionConfig
 from services.fusion.landmarks import corrected
 from services.fusion.pipeline import initial_state, step
 from services.fusion.verdict import Pose
 from tests.bench.landmarks import PAIRS, Looks, all_biases, as_points, estimate_bias
+from tests.bench.networks.corrections import source_of
 from tests.synthetic.gym import Gym, ring_rig
 from tests.synthetic.person import Person
 
@@ -138,3 +140,19 @@ def test_fusion_takes_the_bias_off_what_it_gives_out_and_off_nothing_that_it_fus
         known = replace(pose(before.joints_m.astype(np.float64)), states=before.states)
         np.testing.assert_allclose(after.joints_m, corrected(known, bias).joints_m, atol=1e-5)
         np.testing.assert_array_equal(after.states, before.states)
+
+
+def test_the_corrections_that_are_written_are_python_in_the_house_style_and_say_what_was_found() -> None:
+    bias = drawn_bias()
+    text = source_of(all_biases(looks(bias)), 2)
+    found: dict[str, object] = {}
+    exec(text, found)  # noqa: S102 - it is our own
+    np.testing.assert_allclose(np.array(found["THUNDER"]), bias, atol=0.005)
+    assert "from 2 simulated" in text
+
+
+def test_the_corrections_that_ship_are_symmetric_and_small() -> None:
+    shipped = np.array(THUNDER)
+    np.testing.assert_array_equal(shipped[list(coco.MIRROR)] * (1, -1, 1), shipped)
+    assert np.abs(shipped).max() < 0.15
+    assert np.abs(shipped).max() > 0

@@ -34,16 +34,17 @@ def render_all(plans: Sequence[Plan], data: Path) -> None:
     Raises:
         UserError: as `render_lesson`.
     """
-    for number, plan in enumerate(plans, 1):
+    folders = {folder_of(plan, data): plan for plan in plans}
+    for number, (folder, plan) in enumerate(folders.items(), 1):
         shown_s = time.monotonic()
 
-        def tell(done: int, total: int, left_s: float | None, title: str = f"{plan.name} ({number} of {len(plans)})") -> None:
+        def tell(done: int, total: int, left_s: float | None, title: str = f"{plan.name} ({number} of {len(folders)})") -> None:
             nonlocal shown_s
             if left_s is not None and time.monotonic() - shown_s >= _SHOWN_EVERY_S:
                 shown_s = time.monotonic()
                 sys.stderr.write(f"rendering {title}: {100 * done / total:.0f} %, {left_s / 60:.1f} min left\n")
 
-        render_lesson(plan, folder_of(plan, data), tell)
+        render_lesson(plan, folder, tell)
 
 
 def rendered_lesson(plan: Plan, data: Path) -> Lesson:
