@@ -1,8 +1,8 @@
 """Where a pose network's points lie on the body, against the body's own COCO points: the landmark bias.
 
 Written by `python -m tests.bench.networks --data build --corrections`, from 2 simulated development pupils who perform every
-action; do not edit by hand. Of each COCO point: front, left and up in the axes of its segment (`models.skeleton.segment_axes`), over the
-length of the trunk. Fusion takes it off if `FusionConfig.landmark_bias` says so.
+action; do not edit by hand. Of each COCO point: front, left and up in the axes of its segment
+(`models.skeleton.segment_axes`), over the length of the trunk. Fusion takes it off if `FusionConfig.landmark_bias` says so.
 """
 
 from typing import Final

@@ -12,8 +12,8 @@ PATH: Final = Path(__file__).parents[3] / "models/skeleton/landmark_bias.py"
 _HEAD: Final = '''"""Where a pose network's points lie on the body, against the body's own COCO points: the landmark bias.
 
 Written by `python -m tests.bench.networks --data build --corrections`, from PUPILS simulated development pupils who perform every
-action; do not edit by hand. Of each COCO point: front, left and up in the axes of its segment (`models.skeleton.segment_axes`), over the
-length of the trunk. Fusion takes it off if `FusionConfig.landmark_bias` says so.
+action; do not edit by hand. Of each COCO point: front, left and up in the axes of its segment
+(`models.skeleton.segment_axes`), over the length of the trunk. Fusion takes it off if `FusionConfig.landmark_bias` says so.
 """
 
 from typing import Final
