@@ -33,7 +33,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions lock clean distclean test-faults test-mutations bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-networks
+.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions lock clean distclean test-faults test-mutations bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-networks twin
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
@@ -147,6 +147,9 @@ bench-reconstruct: $(VENV)/.ready networks kernels build/peers/pose2sim/.ready b
 
 bench-networks: $(VENV)/.ready networks kernels ## How well the pose networks see simulated pupils, and the landmark bias
 	$(PYTHON) -m tests.bench.networks --data $(DATA) $(ARGS)
+
+twin: $(VENV)/.ready networks kernels ## Fit the twin to rendered lessons anew (the first time they are rendered, which takes hours), and print how far it agrees
+	$(PYTHON) -m tests.bench.twin --data $(DATA) $(ARGS)
 
 bench-shelf: $(VENV)/.ready ## Everyone on the Shelf data (SHARED, not part of the repository), beside a greedy baseline
 	$(PYTHON) -m tests.bench.shelf --data $(DATA) --shared $(SHARED)
