@@ -25,6 +25,8 @@ _SHARES: Final = np.array(((0.34, 0.39, 0.28), (0.33, 0.33, 0.36), (0.33, 0.28, 
 _NECK_SHARE: Final = 0.45
 _HEAD_RANGE_DEG: Final = np.array((40.0, 50.0, 70.0))
 """(side, lean, turn) that neck and head do together, well inside their limits."""
+_CLEARANCE_M: Final = 0.003
+"""Of a foot in the air."""
 _PALM_SHARE: Final = 0.8
 """Of the way from the wrist to the fingers' roots, where the palm touches what it holds."""
 _TWIST_DEG: Final = 80.0
@@ -183,19 +185,19 @@ def legs(figure: Figure, values: Values, pelvis_m: Float, local: Float) -> dict[
             words = {name: value[off] for name, value in values.items() if name.startswith(f"{side}_leg.")}
             share = np.broadcast_to(1.0 - hold[off, None], (len(off), len(joints)))
             free = rotations.between(target[off], _free_leg(limb, side, words), share)
-            _clear(figure, side, limb, hip[off], pelvis[off], free)
+            _clear(figure, side, limb, hip[off], pelvis[off], free, _CLEARANCE_M * (1.0 - hold[off]))
             local[np.ix_(off, joints)] = free
     return held
 
 
-def _clear(figure: Figure, side: str, limb: Limb, hip: Float, pelvis: Float, leg: Float) -> None:
-    """Bend (T, 4, 3, 3) legs, in place, as far as it takes to keep the foot out of the floor; the foot keeps its turn."""
+def _clear(figure: Figure, side: str, limb: Limb, hip: Float, pelvis: Float, leg: Float, clearance_m: Float) -> None:
+    """Bend (T, 4, 3, 3) legs, in place, as far as it takes to keep the foot (T,) metres over the floor; the foot keeps its turn."""
     thigh = pelvis @ leg[:, 0]
     shank = thigh @ leg[:, 1]
     foot = shank @ leg[:, 2]
     ankle = hip + rotations.through(thigh, limb.upper_m) + rotations.through(shank, limb.lower_m)
     toes = ankle + rotations.through(foot, figure.bones_m[smpl.INDEX[f"{side}_foot"]])
-    lowest = figure.soles[side].lowest_m(np.stack((ankle, toes), axis=1), np.stack((foot, foot @ leg[:, 3]), axis=1))
+    lowest = figure.soles[side].lowest_m(np.stack((ankle, toes), axis=1), np.stack((foot, foot @ leg[:, 3]), axis=1)) - clearance_m
     sunk = np.flatnonzero(lowest < 0)
     if not len(sunk):
         return

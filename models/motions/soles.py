@@ -27,14 +27,14 @@ class Sole:
     Attributes:
         pitches_rad: (N,) ascending.
         ankles_m: (N, 2) of the ankle against the footprint of a foot that looks along x: forward and up. The lowest skin is at 0.
-        under_foot_m: (P, 3) skin under the foot against the ankle, in the T-pose.
-        under_toes_m: (Q, 3) skin under the toes against their joint, in the T-pose.
+        under_m: (2, P, 3) skin that may be lowest, against the ankle and against the toes' joint, in the T-pose.
+        shares: (2, P) how much each of these joints carries it.
     """
 
     pitches_rad: Float
     ankles_m: Float
-    under_foot_m: Float
-    under_toes_m: Float
+    under_m: Float
+    shares: Float
 
     def ankle_m(self, pitch_rad: Float) -> tuple[Float, Float]:
         """Forward and up of the ankle against the footprint, at pitches within `PITCH_DEG`."""
@@ -43,9 +43,8 @@ class Sole:
 
     def lowest_m(self, joints_m: Float, turns: Float) -> Float:
         """(T,) the lowest skin over the floor, for (T, 2, 3) ankles and toes' joints and their (T, 2, 3, 3) turns in the world."""
-        under = (self.under_foot_m, self.under_toes_m)
-        heights = [joints_m[:, part, 2] + (turns[:, part, 2] @ points.T).min(1) for part, points in enumerate(under)]
-        return np.asarray(np.minimum(*heights))
+        heights = joints_m[:, :, 2, None] + np.einsum("tja,jpa->tjp", turns[:, :, 2], self.under_m)
+        return np.asarray((self.shares * heights).sum(1).min(1))
 
     def ankles_at(self, places_m: Float, yaw_rad: Float, pitch_rad: Float) -> Float:
         """(T, 3) ankles of (T, 3) footprints (z: how far the sole is off the floor) with (T,) yaw and pitch."""
@@ -75,16 +74,25 @@ def sole_of(body: Body, side: str) -> Sole:
         # From the footprint to the ankle: back from the ball, or back to the heel's print and up its lever.
         forward = -(turned @ lever)[0] if pitch >= 0 else -lever[0] + heel[0] - (turned @ heel)[0]
         rows.append((forward, up))
-    return Sole(pitches, np.array(rows), _under(body, ankle), _under(body, toes))
+    under, shares = _under(body, ankle, toes)
+    return Sole(pitches, np.array(rows), under, shares)
 
 
-def _under(body: Body, joint: int) -> Float:
-    """(P, 3) the skin that a joint carries more than any other, as far as it can be lowest in some turn: no inner points."""
+def _under(body: Body, ankle: int, toes: int) -> tuple[Float, Float]:
+    """(2, P, 3) and (2, P) as in `Sole`: the skin that is lowest in some turn of the foot and its toes."""
     skin = body.model.skin
-    mine = skin.joints[np.arange(len(skin.joints)), skin.weights.argmax(1)] == joint
-    points = body.rest_vertices_m[mine] - body.rest_joints_m[joint]
-    around = np.linspace(0, 2 * np.pi, 16, endpoint=False)
-    down = np.concatenate(
-        [np.stack((np.cos(around) * c, np.sin(around) * c, np.full(16, -1.0)), axis=1) for c in (0.0, 0.5, 1.0, 2.0, 6.0)]
-    )
-    return np.asarray(points[np.unique((points @ down.T).argmax(0))])
+    shares = np.stack([((skin.joints == joint) * skin.weights).sum(1) for joint in (ankle, toes)])
+    mine = np.flatnonzero(shares.sum(0) > 0.5)
+    shares = shares[:, mine] / shares[:, mine].sum(0)
+    points = body.rest_vertices_m[mine] - body.rest_joints_m[[ankle, toes], None]
+    lever = body.rest_joints_m[toes] - body.rest_joints_m[ankle]
+    lowest: set[int] = set()
+    for pitch in np.radians(np.arange(-60, 80, 10)):
+        for roll in np.radians((-40, -15, 0, 15, 40)):
+            for bend in np.radians((-60, -30, 0, 20)):
+                foot = rotations.about(1, pitch) @ rotations.about(0, roll)
+                toe = foot @ rotations.about(1, bend)
+                heights = shares[0] * (points[0] @ foot[2]) + shares[1] * (lever @ foot[2] + points[1] @ toe[2])
+                lowest.add(int(heights.argmin()))
+    found = sorted(lowest)
+    return points[:, found], shares[:, found]

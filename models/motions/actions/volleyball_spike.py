@@ -113,7 +113,7 @@ def _trunk(line: Timeline, times: tuple[float, ...], behind: float) -> None:
 
 def _arms(line: Timeline, times: tuple[float, ...], faults: tuple[float, float]) -> None:
     first, second, bottom, off, hit, on, settled = times
-    forward, behind = faults[0], min(faults[1], 1.2)
+    forward, behind = faults[0], min(faults[1], 1.05)
     quick = (on - off) / _AIRBORNE_S
     line.arms(first, Arm((0.35, 0.15, -1.0), (1.0, -0.3, 0.3), 35, 15, 0, 0, 15))
     line.arms(second - 0.06, Arm((-0.75, 0.28, -0.65), (1.0, -0.2, -0.2), 14, 20, 0, 0, 12))
