@@ -8,7 +8,7 @@ import pytest
 from models.errors import UserError
 from models.motions.actions.library import ACTIONS
 from models.motions.flights import bouncing, shuttlecock
-from models.motions.motion import RATE_HZ, Attempt, Motion
+from models.motions.motion import RATE_HZ, Attempt, Handed, Motion
 from models.motions.perform import perform
 from models.motions.performance import Performance
 from models.motions.things import BASKETBALL_RADIUS_M
@@ -68,6 +68,7 @@ def test_the_ball_leaves_at_the_release_and_flies_through_the_basket(shot: Motio
     assert np.allclose(np.diff(flown, 2, axis=0) * RATE_HZ**2, (0, 0, -9.81), atol=1e-3)
     jump = np.linalg.norm(np.diff(ball, axis=0), axis=1)
     assert np.nanmax(jump) < 0.05
+    assert np.nanmin(ball[:, 2]) > BASKETBALL_RADIUS_M - 1e-6
     high_and_far = ball[(ball[:, 0] > 3.3) & (ball[:, 2] > 2.0)]
     assert np.abs(high_and_far[:, 2] - 2.6).min() < 0.1
 
@@ -83,6 +84,17 @@ def test_the_ball_lies_on_both_palms_until_then(shot: Motion) -> None:
             palm = np.isin(carrier, [smpl.INDEX[f"{side}_{name}"] for name in ("wrist", "hand")])
             assert abs(from_ball[palm].min() - BASKETBALL_RADIUS_M) < 0.025, (at_s, side)
         assert from_ball[~np.isin(carrier, [smpl.INDEX[name] for name in HANDS])].min() > BASKETBALL_RADIUS_M
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("action", ["badminton_clear", "basketball_shot", "volleyball_spike", "soccer_kick"])
+@pytest.mark.parametrize("handed", ["right", "left"])
+def test_things_stay_above_the_floor_and_never_leap(action: str, handed: Handed) -> None:
+    for thing in perform(Performance(action, handed=handed), pupil(8, "male")).things:
+        there = thing.translations_m[np.isfinite(thing.translations_m).all(1)]
+        assert there[:, 2].min() > 0.03
+        assert np.linalg.norm(np.diff(there, axis=0), axis=1).max() * RATE_HZ < 30
+        assert np.isfinite(thing.rotations_rad).all()
 
 
 def test_a_ball_bounces_lower_each_time_and_never_sinks() -> None:

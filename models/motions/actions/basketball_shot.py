@@ -7,7 +7,7 @@ import numpy as np
 from models.arrays import Float
 from models.motions import rotations
 from models.motions.actions.action import Action, Fault
-from models.motions.ballistics import push_off_s, take_off_m_s, throw_to
+from models.motions.ballistics import GRAVITY_M_S2, push_off_s, take_off_m_s, throw_to
 from models.motions.figure import Placed
 from models.motions.flights import bouncing, coming, held, spinning
 from models.motions.motion import RATE_HZ, Attempt, Motion, Thing
@@ -27,8 +27,12 @@ FAULTS: Final = (
 )
 _BASKET_M: Final = np.array((3.4, 0.0, 2.6))
 """From the shooter; the height for the young."""
-_PASSER_M: Final = np.array((-4.2, 0.6, 1.1))
+_PASSER_M: Final = np.array((4.2, 0.6, 1.1))
+_PASS_S: Final = 0.55
+"""Where the pass comes from, against the shooter, and how long it takes."""
 _DIP: Final = 0.86
+_TIPTOE: Final = 1.085
+"""Heights of the pelvis, in its height when standing: with bent knees, and when the feet leave the floor."""
 _PALM_M: Final = 0.03
 """From a ball's skin to the joints of the hand that holds it."""
 
@@ -39,10 +43,10 @@ def perform(performance: Performance, subject: Subject) -> Motion:
     line = Timeline(subject, performance.handed, natural)
     out, straight, pulled, low = (performance.severity(fault.name) for fault in FAULTS)
     amplitude = performance.amplitude
-
+    # Without bent knees there is little to jump from.
     airborne = 0.22 * np.sqrt(amplitude) * (1.0 - 0.3 * min(straight, 1.5))
     dip = 1.0 - (1.0 - _DIP) * amplitude * max(1.0 - 0.85 * straight, 0.08)
-    high = 1.085
+    high = _TIPTOE
     push = push_off_s((high - dip) * line.leg_m, take_off_m_s(airborne))
 
     catch = 0.2 + natural.seconds(0.45)
@@ -146,11 +150,9 @@ def _ball(line: Timeline, placed: Placed, times_s: Float, catch: float, release:
     velocity = throw_to(place[last], shooter + _BASKET_M, 54.0)
     place[last:] = bouncing(place[last], velocity, BASKETBALL_RADIUS_M, times_s[last:] - times_s[last])
     turned[last:] = spinning(placed.turns[last, wrist], np.array((0.0, -1.0, 0.0)), 2.0, times_s[last:] - times_s[last])
-    passed_s = 0.55
-    arrival = (place[first] - (shooter - _PASSER_M * line.across)) / passed_s
-    arrival[2] -= 9.81 * passed_s / 2
+    arrival = (place[first] - shooter - _PASSER_M * line.across) / _PASS_S - np.array((0.0, 0.0, GRAVITY_M_S2 * _PASS_S / 2))
     place[:first] = coming(place[first], arrival, times_s[:first] - times_s[first])
-    place[: max(first - round(passed_s * RATE_HZ), 0)] = np.nan
+    place[: max(first - round(_PASS_S * RATE_HZ), 0)] = np.nan
     turned[:first] = spinning(placed.turns[first, wrist], np.array((0.0, -1.0, 0.0)), 1.0, times_s[:first] - times_s[first])
     return Thing("basketball", place, turned)
 
