@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+import msgspec
 import numpy as np
 
 from models.arrays import Float
@@ -138,9 +139,11 @@ def in_place_of(events: Sequence[Event], observations: Sequence[tuple[float, Obs
     made = {(observation.camera, observation.t_mid_ns): observation for _, observation in observations}
     out: list[Event] = []
     for event in events:
-        own = made.get((event.camera, event.t_mid_ns)) if isinstance(event, Observation) else event
-        if own is not None:
-            out.append(own)
+        if not isinstance(event, Observation):
+            out.append(event)
+        elif (event.camera, event.t_mid_ns) in made:
+            own = made[event.camera, event.t_mid_ns]
+            out.append(msgspec.structs.replace(own, sequence=event.sequence, frame=event.frame))
     return out
 
 
