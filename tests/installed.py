@@ -8,6 +8,7 @@ import pytest
 from edge.footage.prepare import is_ready
 from edge.footage.sets import ONE_PERSON, Footage
 from edge.simulation.graphics import graphics
+from edge.simulation.shipped import is_installed
 from models.errors import UserError
 
 ROOT = Path(__file__).parents[1]
@@ -18,6 +19,11 @@ def require_footage(footage: Footage = ONE_PERSON) -> Path:
     """The data folder, with a built-in footage in it."""
     name = footage.name
     return _require(is_ready(DATA, footage), f"the built-in footage is not in build/{name}; run `make footage SOURCE={name}`")
+
+
+def require_lesson() -> Path:
+    """The data folder, with the built-in simulated lesson in it."""
+    return _require(is_installed(DATA), "the built-in lesson is not in build/simulated; run `make simulated`")
 
 
 def require_networks() -> Path:

@@ -13,7 +13,7 @@ _OPENING = """\
 
 One TOML file says what a box has and how it shall work. Unknown keys and values out of bounds are refused, in one line that names
 the key. `kinebox config check FILE` checks a file and the calibration that it names, `kinebox config show FILE` prints it, as
-TOML, with every value that it leaves to its default. An example is `deploy/sites/footage/site.toml`.
+TOML, with every value that it leaves to its default. An example is `deploy/sites/simulated/site.toml`.
 
 A file of an older version is refused by `kinebox run`. `kinebox config migrate FILE` brings it to the newest one: comments stay,
 and what it was is kept beside it as `FILE.bak-VERSION-TIME`. `--dry-run` only prints what would become different.

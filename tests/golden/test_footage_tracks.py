@@ -45,7 +45,7 @@ def observed(camera: str) -> dict[int, Observation]:
     cv2.setNumThreads(1)
     pose, detector = load_pose_network("thunder", require_networks()), load_person_detector(data, score_min=DETECTION_SCORE_MIN)
     whole = load_video(data / f"footage/{camera}.avi", camera)
-    half = Video(camera, whole.size_px, whole.pictures[::STEP])
+    half = Video(camera, whole.size_px, tuple(whole.pictures[number] for number in range(0, len(whole.pictures), STEP)))
     return {STEP * o.frame: o for o in observe_video(half, Networks(pose, lambda: detector), 30.0)}
 
 

@@ -21,7 +21,7 @@ from models.messages.motion import JointState
 from models.skeleton import coco
 from services.tablet import motion_frame
 from services.tablet.motion_frame import MotionFrame
-from tests.installed import ROOT, require_footage, require_networks
+from tests.installed import ROOT, require_footage, require_lesson, require_networks
 from tests.integration.waiting import free_port, until
 from tests.lifeline import bound
 
@@ -65,13 +65,13 @@ class Box:
 
 
 @contextmanager
-def running(folder: Path, more_site: str = "") -> Iterator[Box]:
-    data = require_footage()
+def running(folder: Path, more_site: str = "", shipped: Path = SHIPPED) -> Iterator[Box]:
+    data = require_footage() if shipped == SHIPPED else require_lesson()
     require_networks()
     port = free_port()
-    (folder / "rig.toml").write_bytes((SHIPPED / "rig.toml").read_bytes())
+    (folder / "rig.toml").write_bytes((shipped / "rig.toml").read_bytes())
     more = f'\n[bus]\nendpoint = "tcp/127.0.0.1:{free_port()}"\n[tablet]\nhost = "127.0.0.1"\nport = {port}\n'
-    (folder / "site.toml").write_text((SHIPPED / "site.toml").read_text() + more + more_site)
+    (folder / "site.toml").write_text((shipped / "site.toml").read_text() + more + more_site)
     command = [sys.executable, "-m", "services.cli.main", "run", "--site", str(folder / "site.toml"), "--data", str(data)]
     with (folder / "output").open("wb") as output:
         process = subprocess.Popen(bound(command), cwd=ROOT, stdout=output, stderr=output)

@@ -9,13 +9,21 @@ import pytest
 
 from edge.cameras.video import load_video
 from edge.footage.transcode import write_motion_jpeg
-from edge.simulation.build.ship import compress
-from edge.simulation.files import VIDEO_SUFFIX
+from edge.simulation import truth_file
+from edge.simulation.attempts import read_attempts
+from edge.simulation.build.ship import SITE, compress
+from edge.simulation.files import ATTEMPTS_NAME, FOLDER, SHIPPED, TRUTH_NAME, VIDEO_SUFFIX
 from edge.simulation.film import sensor_of
-from edge.simulation.presets import six_actions
+from edge.simulation.plan import read_plan
+from edge.simulation.plan_check import require_sound
+from edge.simulation.presets import SIX_ACTIONS, six_actions
 from edge.simulation.render_lesson import JPEG_QUALITY
+from edge.simulation.shipped import SOURCE, cameras
 from edge.simulation.shipped_worker import linear_light, make_film
+from edge.simulation.stage import rig_of
 from models.arrays import UInt8
+from models.camera.rig import decode_rig
+from models.config.site import decode_site
 from models.errors import UserError
 from tests.small_video import video_of
 
@@ -81,3 +89,33 @@ def test_linear_light_is_undone_by_the_sensors_curve() -> None:
     sensor = sensor_of(PLAN, "cam01")
     still = replace(sensor, full_well_e=np.inf, read_noise_e=0.0, vignetting=0.0, white_balance=(1.0, 1.0, 1.0))
     assert np.abs(still.develop(light, 0)[0, :, 0].astype(int) - levels).max() <= 1
+
+
+def test_what_is_shipped_is_small_and_has_a_plan_that_can_still_be_rendered() -> None:
+    size = sum(path.stat().st_size for path in SOURCE.iterdir())
+    assert size <= 10_000_000
+    plan = read_plan(SOURCE, "cam01")
+    require_sound(plan, "shipped")
+    assert tuple(cameras()) == rig_of(plan).names
+
+
+def test_the_site_of_the_shipped_lesson_names_its_cameras_and_where_they_stand() -> None:
+    site = decode_site((SITE / "site.toml").read_bytes(), "site.toml")
+    rig = decode_rig((SITE / site.calibration).read_bytes(), site.calibration)
+    assert [camera.name for camera in site.cameras] == list(rig.names) == cameras()
+    assert {(camera.kind, camera.path) for camera in site.cameras} == {("simulated", f"{FOLDER}/{SHIPPED}")}
+    for camera, planned in zip(rig, rig_of(read_plan(SOURCE, "cam01")), strict=True):
+        assert np.array_equal(camera.projection, planned.projection)
+
+
+def test_what_is_true_in_the_shipped_lesson_covers_all_of_it() -> None:
+    attempts = read_attempts(SOURCE / ATTEMPTS_NAME)["pupil"]
+    truth = truth_file.read(SOURCE / TRUTH_NAME)
+    assert tuple(attempt.action for attempt in attempts) == SIX_ACTIONS
+    assert sorted(truth.cameras) == cameras()
+    for camera in truth.cameras.values():
+        assert camera.times_s[-1] > attempts[-1].end_s
+        upright = [attempt for attempt in attempts if attempt.action != "forward_roll"]
+        during = [(camera.times_s > attempt.start_s) & (camera.times_s < attempt.end_s) for attempt in upright]
+        seen = np.concatenate([camera.coco_px[each, 0].reshape(-1, 2) for each in during])
+        assert ((seen > 0) & (seen < np.array((1280, 720)))).all(axis=1).mean() > 0.97

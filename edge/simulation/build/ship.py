@@ -16,7 +16,18 @@ import cv2
 import numpy as np
 
 from edge.cameras.video import load_video
-from edge.simulation.files import FOLDER, PLAN_NAME, RIG_NAME, SHIPPED, SITE_NAME, TRUTH_NAME, VIDEO_SUFFIX, film_path
+from edge.simulation.files import (
+    ATTEMPTS_NAME,
+    FOLDER,
+    PLAN_NAME,
+    RIG_NAME,
+    SHIPPED,
+    SITE_NAME,
+    TRUTH_NAME,
+    VIDEO_SUFFIX,
+    film_path,
+)
+from edge.simulation.plan import read_plan
 from edge.simulation.presets import six_actions
 from edge.simulation.render_lesson import Look, render_lesson
 from edge.simulation.shipped import SOURCE
@@ -25,26 +36,31 @@ from edge.simulation.site_of_lesson import site_of
 SITE = Path("deploy/sites/simulated")
 TITLE = "Simulated lesson"
 CODEC = "libsvtav1"
+_SITE_HEAD = b"# The site that runs without any camera: the simulated lesson that comes with KineBox (docs/simulation.md).\n"
 _LOOK = Look(noisy=False, quality=97)
 _MOST_BYTES = 10_000_000
 
 
 def ship(data: Path, crf: int, speed: int) -> int:
     """Make the files anew; returns how many bytes they have."""
-    plan = six_actions()
     folder = data / FOLDER / "to-ship"
-    render_lesson(plan, folder, _progress, _LOOK)
+    render_lesson(six_actions(), folder, _progress, _LOOK)
+    return pack(folder, crf, speed)
+
+
+def pack(folder: Path, crf: int, speed: int) -> int:
+    """Put a lesson that was rendered without noise where it is shipped from; returns how many bytes that has."""
+    names = sorted(path.stem for path in folder.glob("*.avi"))
+    rate_hz = read_plan(folder, names[0]).rate_hz
     shutil.rmtree(SOURCE, ignore_errors=True)
     SOURCE.mkdir()
-    names = sorted(path.stem for path in folder.glob("*.avi"))
     for name in names:
-        compress(film_path(folder, name), SOURCE / f"{name}{VIDEO_SUFFIX}", plan.rate_hz, crf, speed)
-    for name in (PLAN_NAME, TRUTH_NAME):
-        if (folder / name).is_file():
-            shutil.copy(folder / name, SOURCE / name)
+        compress(film_path(folder, name), SOURCE / f"{name}{VIDEO_SUFFIX}", rate_hz, crf, speed)
+    for name in (PLAN_NAME, TRUTH_NAME, ATTEMPTS_NAME):
+        shutil.copy(folder / name, SOURCE / name)
     SITE.mkdir(exist_ok=True)
     shutil.copy(folder / RIG_NAME, SITE / RIG_NAME)
-    (SITE / SITE_NAME).write_bytes(site_of(TITLE, names, f"{FOLDER}/{SHIPPED}", RIG_NAME))
+    (SITE / SITE_NAME).write_bytes(_SITE_HEAD + site_of(TITLE, names, f"{FOLDER}/{SHIPPED}", RIG_NAME))
     return sum(path.stat().st_size for path in SOURCE.iterdir())
 
 
@@ -75,8 +91,8 @@ def main() -> int:
     """Command line; returns the exit code."""
     parser = argparse.ArgumentParser(prog="python -m edge.simulation.build.ship", description=__doc__)
     parser.add_argument("--data", type=Path, default=Path("build"), help="data folder (default: build)")
-    parser.add_argument("--crf", type=int, default=34, help="quality of AV1: less is better and larger")
-    parser.add_argument("--speed", type=int, default=4, help="of the encoder, 0 to 13: less is smaller")
+    parser.add_argument("--crf", type=int, default=21, help="quality of AV1: less is better and larger")
+    parser.add_argument("--speed", type=int, default=6, help="of the encoder, 0 to 13: less is smaller")
     options = parser.parse_args()
     size = ship(options.data, options.crf, options.speed)
     sys.stderr.write(f"{size / 1e6:.2f} MB in {SOURCE}\n")
