@@ -75,8 +75,9 @@ layout(location = 3) in vec2 uv;
 uniform vec2 size;
 uniform vec2 near_far;
 uniform vec2 nudge; // in pixels
-out vec4 outer, inner;
-out vec2 spot;
+// Slivers along an outline may not cover a pixel's middle: outside of them light would be anything.
+centroid out vec4 outer, inner;
+centroid out vec2 spot;
 
 void main() {
     outer = outer_light;
@@ -92,8 +93,8 @@ void main() {
 MOVING_FRAGMENT: Final = (
     VERSION
     + """
-in vec4 outer, inner;
-in vec2 spot;
+centroid in vec4 outer, inner;
+centroid in vec2 spot;
 uniform bool textured;
 uniform sampler2D picture;
 uniform sampler2D room_depths; // in each of the four samples of a pixel

@@ -10,7 +10,7 @@ from edge.simulation.surface import Surface
 from models.arrays import Float
 from tests.synthetic.moving_scene import sphere
 
-RADIUS_M = 0.012
+RADIUS_M = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,10 +40,10 @@ def in_the_dark(pupil: Pupil, numbers: tuple[int, ...]) -> Scene:
     return Scene((), (), (Markers(pupil, numbers),), (Lamp((0.0, 0.0, -1.0), (0.4, 0.4, 0.4)),), ambient=(1.0, 1.0, 1.0))
 
 
-def centroids_px(picture: LinearPicture, expected_px: Float, half_px: int = 10) -> Float:
+def centroids_px(picture: LinearPicture, expected_px: Float, half_px: int, apart_px: int) -> Float:
     """(K, 2) centroids by intensity of the markers that were expected there; NaN for those that others are too near to.
 
-    Each is looked for within `half_px` of where it is expected.
+    Each is looked for within `half_px` of where it is expected, or within less, so that others reach within `apart_px` of theirs.
     """
     height, width = picture.shape[:2]
     light = picture[..., 1]
@@ -51,8 +51,8 @@ def centroids_px(picture: LinearPicture, expected_px: Float, half_px: int = 10) 
     for number, (x, y) in enumerate(expected_px):
         apart = np.linalg.norm(expected_px - (x, y), axis=1)
         apart[number] = np.inf
-        half = int(min(half_px, apart.min() / 2 - 2))
-        if half < 7 or not (half < x < width - half - 1 and half < y < height - half - 1):
+        half = int(min(half_px, apart.min() / np.sqrt(2) - apart_px))
+        if half < apart_px or not (half < x < width - half - 1 and half < y < height - half - 1):
             continue
         left, top = round(x) - half, round(y) - half
         window = light[top : top + 2 * half + 1, left : left + 2 * half + 1]

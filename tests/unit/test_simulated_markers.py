@@ -20,7 +20,7 @@ from models.motions.subject import Subject
 from models.skeleton.coco_feet import INDEX
 from tests.bodies import body_model, someone
 from tests.installed import require_graphics
-from tests.synthetic.markers import centroids_px, in_the_dark
+from tests.synthetic.markers import RADIUS_M, centroids_px, in_the_dark
 from tests.synthetic.moving_scene import Flinger, Moved, look_at
 
 WITHIN_PX = 0.25
@@ -73,11 +73,13 @@ def errors_px(drawn: Renderer, pupil: Pupil, camera: Camera, shutter: Shutter, t
     view = drawn.view(camera, shutter)
     witness = Witness(Scene((), (pupil,), (), ()), lens_of(camera), shutter)
     apart = []
+    # Of a marker, as far away as the nearest may be, with its smooth edge.
+    radius_px = 2.5 + RADIUS_M * camera.matrix_px[0, 0] / (np.linalg.norm(camera.centre_m - pupil.joints_m(times_s[0])[0]) - 0.5)
     for t_s in times_s:
         long = shutter.exposure_s > 0.01
         within = t_s + (np.linspace(-0.5, 0.5, 41)[1::2] * shutter.exposure_s if long else np.zeros(1))
         expected = np.stack([witness.take_down(when).coco_px[0, 0][list(POINTS)] for when in within]).astype(np.float64).mean(0)
-        found = centroids_px(view.picture(t_s), expected, 26 if long else 10)
+        found = centroids_px(view.picture(t_s), expected, *((30, 24) if long else (12, round(radius_px))))
         apart.append(np.linalg.norm(found - expected, axis=1))
     every = np.concatenate(apart)
     return np.asarray(every[np.isfinite(every)])
@@ -110,7 +112,7 @@ def test_without_the_rolling_rows_markers_would_not_be_there() -> None:
     apart = []
     for t_s in (0.05, 0.12, 0.19, 0.26):
         expected = still.take_down(t_s).coco_px[0, 0][list(POINTS)].astype(np.float64)
-        apart.append(np.linalg.norm(centroids_px(view.picture(t_s), expected) - expected, axis=1))
+        apart.append(np.linalg.norm(centroids_px(view.picture(t_s), expected, 16, 8) - expected, axis=1))
     assert np.nanmax(np.concatenate(apart)) > 4
 
 
@@ -124,7 +126,15 @@ def test_markers_are_where_truth_says_in_every_action(action: str) -> None:
     (attempt,) = motion.attempts
     pupil = Moved(body, motion)
     drawn = Renderer(in_the_dark(pupil, POINTS))
-    times_s = [attempt.peak_s + share * (attempt.end_s - attempt.start_s) for share in (-0.3, -0.1, -0.05, 0.0, 0.05, 0.15)]
+    shares = (-0.3, -0.2, -0.1, -0.05, -0.02, 0.0, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3)
+    times_s = [attempt.peak_s + share * (attempt.end_s - attempt.start_s) for share in shares]
     found = [errors_px(drawn, pupil, camera, SHUTTERS["rolling"], times_s) for camera in make_rig("corners", "test", 5).cameras[:3]]
     assert sum(len(apart) for apart in found) > 20
     assert np.concatenate(found).max() < WITHIN_PX
+
+
+@pytest.mark.slow
+def test_no_outline_is_brighter_than_what_it_is_the_outline_of() -> None:
+    view = renderer().view(look_at((-6.0, -3.0, 1.7), focal_px=1050, size_px=(1280, 720)), SHUTTERS["rolling"])
+    brightest = [float(view.picture(0.05 * number).max()) for number in range(40)]
+    assert max(brightest) < 1.01  # A marker's light from above, which is its most.
