@@ -14,6 +14,7 @@ from models.motions import palms, posing, rotations, splines
 from models.motions.actions.action import Action, Fault
 from models.motions.figure import Figure, figure_of
 from models.motions.inverse_kinematics import limb_of
+from models.motions.mirror import mirrored
 from models.motions.motion import CONTACTS, RATE_HZ, Attempt, Motion
 from models.motions.natural import Natural
 from models.motions.performance import Performance
@@ -37,7 +38,7 @@ _COLUMNS: Final = (
 _KEYS: Final = np.array(
     #  time  roll turn bow  legs out  knees    arms out  along height
     (
-        (0.00,   0,  0,  0,  0,   0,  10, 10,   9,   9, 0.00, 1.00),
+        (0.00,   0,  0,  0,  0,   0,  10, 10, 9.65, 9.65, 0.00, 1.00),
         (0.48,  -3,  8, -3, 12,   2,  20, 10, 150, 150, -0.07, 0.99),
         (0.82,   3, 20, -6, 36,   4,  16, 12, 156, 154, 0.22, 0.93),
         (1.04,  28, 36, 10, 40,  24,  34, 10, 152, 160, 0.66, 0.91),
@@ -61,15 +62,17 @@ _STEP: Final = 0.74
 _TURNED_OUT_DEG: Final = 34.0
 """How much further than in standing the foot that carries alone points to the side."""
 _HANDS_APART: Final = 0.46
-_KICK_S, _PUSH_S = -0.05, 0.10
+_KICK_S, _PUSH_S = -0.05, 0.075
 """The second foot leaves so long after the lunge, the first one so long before the second hand bears."""
-_REACH_S: Final = (0.065, 0.04)
+_REACH_S: Final = (0.055, 0.04)
 """The first and the second hand touch the ground so long after their key poses."""
 _SOFT_S, _SOFT_WAY_S = 0.028, 0.075
 _YIELD_S: Final = 0.12
 _ARM_SPARE: Final = 0.992
 """No arm is stretched further than this share of its length."""
-_LIES_M: Final = 0.005
+_ROUNDS, _STEADY_S = 2, 0.045
+"""How often, and over how long, the pelvis gives way to what the limbs do, so that the centre of mass goes smoothly."""
+_LIES_M: Final = 0.007
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,22 +109,31 @@ def perform(performance: Performance, subject: Subject) -> Motion:
     pelvis[:, 2] -= 0.075 * figure.leg_m * performance.severity("arms_bent") * course.inverted
     hands = _hands(figure, course, performance)
     pelvis[:, 2] -= _too_high(figure, hands, pelvis, local)
-    posing.legs(figure, values, pelvis, local)
+    for _ in range(_ROUNDS):
+        weight = _placed(figure, values, hands, pelvis, local.copy())
+        pelvis += splines.softened(weight, _STEADY_S * RATE_HZ) - weight
+    _placed(figure, values, hands, pelvis, local)
+    placed = figure.place_local(pelvis, local)
     for palm in hands:
-        bears = palm.bears >= 1
-        palms.bear(figure, palm, pelvis, local)
-        palms.settle(figure, palm.side, 0.0, bears, pelvis, local)
-        placed = figure.place_local(pelvis, local)
         moved = np.linalg.norm((placed.joints_m[:, smpl.INDEX[f"{palm.side}_wrist"]] - palm.wrist_m)[:, :2], axis=1)
         lies = (moved < _LIES_M) & (palms.lowest_m(figure, palm.side, placed) < _LIES_M)
-        contacts[:, CONTACTS.index(f"{palm.side}_hand")] = bears & lies
+        contacts[:, CONTACTS.index(f"{palm.side}_hand")] = (palm.bears >= 1) & lies
     at_s = course.at_s
     attempt = Attempt(
         "cartwheel", performance.handed, float(at_s[0]), float(at_s[_FIRST_HAND]), float(at_s[_UPSIDE_DOWN]), float(at_s[-1]),
         tuple(performance.faults.items()),
     )  # fmt: skip
     motion = Motion(pelvis, rotations.vectors(local), contacts, (attempt,))
-    return motion if performance.handed == "left" else _mirrored(motion)
+    return motion if performance.handed == "left" else mirrored(motion)
+
+
+def _placed(figure: Figure, values: dict[str, Float], hands: tuple[palms.Palm, ...], pelvis: Float, local: Float) -> Float:
+    """Put feet and hands where they bear, in place in `local`. Returns (T, 3) the centre of mass."""
+    posing.legs(figure, values, pelvis, local)
+    for palm in hands:
+        palms.bear(figure, palm, pelvis, local)
+        palms.settle(figure, palm.side, 0.0, palm.bears >= 1, pelvis, local)
+    return figure.centres_of_mass_m(figure.place_local(pelvis, local))
 
 
 def _course(performance: Performance) -> _Course:
@@ -257,17 +269,6 @@ def _too_high(figure: Figure, hands: tuple[palms.Palm, ...], pelvis: Float, loca
         lower = np.maximum(lower, np.where(palm.bears >= 1, -to_wrist[:, 2] - down, 0.0))
     widest = np.array([lower[max(0, at - 12) : at + 13].max() for at in range(len(lower))])
     return splines.softened(widest, 0.05 * RATE_HZ)
-
-
-def _mirrored(motion: Motion) -> Motion:
-    """Left does what right did."""
-    swapped = [CONTACTS.index(name.replace("left", "x").replace("right", "left").replace("x", "right")) for name in CONTACTS]
-    return Motion(
-        motion.translations_m * (1.0, -1.0, 1.0),
-        motion.rotations_rad[:, list(smpl.MIRROR)] * (-1.0, 1.0, -1.0),
-        motion.contacts[:, swapped],
-        motion.attempts,
-    )
 
 
 ACTION: Final = Action("cartwheel", "Cartwheel", FAULTS, perform)

@@ -15,6 +15,7 @@ from models.motions import mat, palms, posing, rotations, splines
 from models.motions.actions.action import Action, Fault
 from models.motions.carrying import carried, over_foot, shares, smooth
 from models.motions.figure import Figure, figure_of
+from models.motions.mirror import mirrored
 from models.motions.motion import CONTACTS, RATE_HZ, Attempt, Motion
 from models.motions.natural import Natural
 from models.motions.performance import Performance
@@ -126,7 +127,8 @@ def perform(performance: Performance, subject: Subject) -> Motion:
         "forward_roll", performance.handed, float(at_s[0]), float(at_s[_PUSH]), float(at_s[_BACK]), float(at_s[-1]),
         tuple(performance.faults.items()),
     )  # fmt: skip
-    return Motion(pelvis[:end], rotations.vectors(local[:end]), contacts[:end], (attempt,))
+    motion = Motion(pelvis[:end], rotations.vectors(local[:end]), contacts[:end], (attempt,))
+    return motion if performance.handed == "right" else mirrored(motion)
 
 
 def _course(performance: Performance, figure: Figure) -> _Course:

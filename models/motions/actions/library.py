@@ -5,8 +5,10 @@ from typing import Final
 from models.motions.actions import (
     badminton_clear,
     basketball_shot,
+    cartwheel,
     forward_roll,
     long_jump,
+    run,
     soccer_kick,
     squat,
     star_jump,
@@ -23,6 +25,8 @@ _ALL: Final[tuple[Action, ...]] = (
     forward_roll.ACTION,
     squat.ACTION,
     star_jump.ACTION,
+    run.ACTION,
+    cartwheel.ACTION,
 )
 
 ACTIONS: Final[dict[str, Action]] = {action.name: action for action in _ALL}

@@ -16,13 +16,13 @@ FAULTS: Final = (
     Fault("knees_in", "the knees fall in: their planes turn 30 degrees inwards"),
     Fault("heels_up", "the heels leave the floor by 24 degrees of the foot"),
     Fault("back_rounded", "the back is rounded by 42 degrees"),
-    Fault("trunk_forward", "the trunk tips 14 degrees further to the front"),
+    Fault("trunk_forward", "the trunk tips 12 degrees further to the front"),
     Fault("too_shallow", "the hips sink 30 % less"),
 )
 _STILL_S: Final = 0.3
 _SIDES: Final[tuple[Side, Side]] = ("left", "right")
-_DEPTH: Final = 0.50
-"""How far the pelvis sinks, of its height when standing: a knee bent to 110 degrees."""
+_DEPTH: Final = 0.41
+"""How far the pelvis sinks, of its height when standing: a knee bent to 110 degrees, the weight over the feet."""
 
 
 def perform(performance: Performance, subject: Subject) -> Motion:
@@ -33,7 +33,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
 
     depth = _DEPTH * performance.amplitude * natural.times(0.04) * (1 - 0.3 * shallow)
     share = depth / _DEPTH
-    tip = (46 + 14 * forward) * share**0.7 - 14 * rounded
+    tip = (44 + 12 * forward) * share**0.7 - 14 * rounded
     lean = 42 * rounded
     begin = _STILL_S
     bottom = snapped(begin + natural.seconds(1.0))
@@ -42,7 +42,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
 
     line = Timeline(subject, performance.handed, natural)
     line.stand(begin)
-    back = -0.06 * share - 0.03 * forward + 0.05 * heels_up
+    back = -0.27 * share + 0.02 * forward + 0.06 * heels_up
     low = Body(at=(back, 0.0), height=1 - depth, tip=tip, lean=lean, bow=0, gaze=(0, 8 + 25 * rounded))
     for at_s in (bottom, rise):
         line.key(at_s, low)
