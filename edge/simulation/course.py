@@ -29,11 +29,6 @@ class Course:
     half_s: float
     powers: Float
 
-    def at(self, t_s: float) -> Float:
-        """(V, 3) places at a time."""
-        s = (t_s - self.mid_s) / self.half_s
-        return np.asarray(np.polynomial.polynomial.polyval(s, self.powers))
-
 
 def places_at(course: Course, times: Float) -> Float:
     """(V, 3) where each vertex is at an s of its own, (V,)."""

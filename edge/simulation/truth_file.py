@@ -1,6 +1,5 @@
 """The file of a lesson's truth: an .npz with a header in JSON, and the arrays of `Truth` as `CAMERA/FIELD`; nothing is pickled."""
 
-import errno
 import io
 import zipfile
 import zlib
@@ -99,23 +98,6 @@ def read(path: Path) -> LessonTruth:
     except OSError as error:
         raise UserError(f"{path}: cannot be read ({error.strerror}); render the lesson again") from error
     return decode(data, str(path))
-
-
-def write(path: Path, truth: LessonTruth) -> None:
-    """Write the file whole or not at all.
-
-    Raises:
-        UserError: the disk is full or cannot be written.
-    """
-    part = path.with_name(f"{path.name}.part")
-    try:
-        part.write_bytes(encode(truth))
-        part.replace(path)
-    except OSError as error:
-        remedy = "make room on the disk" if error.errno in {errno.ENOSPC, errno.EDQUOT} else "check that the folder can be written"
-        raise UserError(f"{path}: the truth could not be written ({error.strerror}); {remedy} and render again") from error
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _read_header(data: bytes, name: str) -> _Header:
