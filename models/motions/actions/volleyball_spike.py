@@ -117,15 +117,17 @@ def _arms(line: Timeline, times: tuple[float, ...], faults: tuple[float, float])
     quick = (on - off) / _AIRBORNE_S
     line.arms(first, Arm((0.35, 0.15, -1.0), (1.0, -0.3, 0.3), 35, 15, 0, 0, 15))
     line.arms(second - 0.06, Arm((-0.75, 0.28, -0.65), (1.0, -0.2, -0.2), 14, 20, 0, 0, 12))
-    line.arms(second + 0.03, Arm((-0.7, 0.28, -0.7), (1.0, -0.2, -0.2), 14, 20, 0, 0, 12))
-    line.arms(bottom + 0.035, Arm((0.15, 0.2, -1.0), (1.0, -0.3, 0.2), 22, 15, 0, 0, 12))
-    line.key(off + 0.035 * quick, left_arm=Arm((0.95, 0.25, 0.35), (0.1, -0.3, 1.0), 40, 10, 0, 0, 8))
-    line.key(off + 0.035 * quick, right_arm=Arm((0.8, 0.45, 0.2), (0.2, -0.2, 1.0), 75, 5, -10, 0, 8))
+    line.arms(second, Arm((-0.7, 0.28, -0.7), (1.0, -0.2, -0.2), 14, 20, 0, 0, 12))
+    line.arms(bottom, Arm((0.05, 0.2, -1.0), (1.0, -0.3, 0.2), 38, 15, 0, 0, 12))
+    line.key(off + 0.06 * quick, left_arm=Arm((0.95, 0.25, 0.35), (0.1, -0.3, 1.0), 55, 10, 0, 0, 8))
+    line.key(
+        off + 0.06 * quick, right_arm=Arm((0.05 + 0.6 * forward, 0.8 - 0.25 * forward, 0.1), (0.2, -0.2, 1.0), 88, 5, -10, 0, 8)
+    )
     line.key(hit - 0.11 * quick, left_arm=Arm((0.85, 0.2, 0.75), (0.1, -0.3, 1.0), 22, 15, 0, 0, 6))
     line.key(hit + 0.02 * quick, left_arm=Arm((0.6, 0.3, -0.5), (0.8, -0.4, 0.6), 80, 10, 0, 0, 20))
     line.key(hit + 0.2 * quick, left_arm=Arm((0.1, 0.35, -0.95), (1.0, -0.4, 0.2), 60, 10, 0, 0, 20))
     cocked = (-0.4 + 1.3 * forward, 0.85 - 0.4 * forward, 0.3 - 0.2 * forward)
-    line.key(hit - 0.13 * quick, right_arm=Arm(cocked, (0.0, -0.15, 1.0), 98, -5, -18, 0, 8))
+    line.key(hit - 0.115 * quick, right_arm=Arm(cocked, (0.0, -0.15, 1.0), 98, -5, -18, 0, 8))
     line.key(
         hit - 0.062 * quick,
         right_arm=Arm((0.1 + 0.7 * forward, 0.92 - 0.35 * forward, 0.5), (0.0, -0.62, 0.78), 122, -20, -28, 0, 8),
