@@ -90,7 +90,7 @@ class Agreement:
             for action in (*self.actions, None)
         ]
         title = "the twin beside rendered lessons: mpjpe in mm, jitter in mm a frame squared"
-        return [ResultTable(title, columns, tuple(rows)), _sizes(self.told, self.made), _habits(self.told, self.made)]
+        return [ResultTable(title, columns, tuple(rows)), *(table(self.told, self.made) for table in (_sizes, _memory, _habits))]
 
     def _beside(self, name: str, action: str | None) -> tuple[float, float, float]:
         return self.figure(self.rendered, name, action), self.figure(self.twin, name, action), self.gap_pct(name, action)
@@ -179,17 +179,22 @@ def _sizes(told: Description, made: Description) -> ResultTable:
     return _by_joints("errors in the picture, quantiles in per cent of the stature", columns)
 
 
-def _habits(told: Description, made: Description) -> ResultTable:
-    columns = {f"memory {lag}": [each.memory[:, index] for each in (told, made)] for index, lag in enumerate(LAGS)}
-    columns["steady %"] = [100 * each.steady for each in (told, made)]
-    columns["crossed %"] = [100 * each.crossed for each in (told, made)]
-    columns["score to error"] = [each.knowing for each in (told, made)]
-    columns["score"] = [each.score for each in (told, made)]
-    columns["lost %"] = [np.full(coco.COUNT, 100 * each.lost) for each in (told, made)]
+def _memory(told: Description, made: Description) -> ResultTable:
+    columns = {f"{lag} later": [each.memory[:, index] for each in (told, made)] for index, lag in enumerate(LAGS)}
+    columns["stream's mean, %"] = [100 * each.steady for each in (told, made)]
     return _by_joints(
-        "habits of the errors: correlation so many pictures apart, a stream's mean in per cent of the stature, swaps, scores",
-        columns,
+        "what stays of errors: correlation so many pictures later; a stream's mean in per cent of the stature", columns
     )
+
+
+def _habits(told: Description, made: Description) -> ResultTable:
+    columns = {
+        "crossed, %": [100 * each.crossed for each in (told, made)],
+        "lost, %": [np.full(coco.COUNT, 100 * each.lost) for each in (told, made)],
+        "score": [each.score for each in (told, made)],
+        "score to error": [each.knowing for each in (told, made)],
+    }
+    return _by_joints("swaps, losses, mean score, and its rank correlation with the error", columns)
 
 
 def _by_joints(title: str, columns: Mapping[str, Sequence[Float]]) -> ResultTable:
