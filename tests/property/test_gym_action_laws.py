@@ -13,9 +13,11 @@ from models.body.pose import mirrored
 from models.body.prior import SEXES, Sex
 from models.motions import mat
 from models.motions.actions.library import ACTIONS
+from models.motions.figure import figure_of
 from models.motions.motion import CONTACTS, RATE_HZ, Motion
 from models.motions.perform import perform
 from models.motions.performance import AMPLITUDE, SEVERITY, TEMPO, Performance
+from models.motions.rolling import trunk_skin
 from models.motions.subject import Subject
 from models.skeleton import smpl
 from tests.action_measures import Seen
@@ -102,7 +104,9 @@ def test_feet_stand_and_bodies_fly_for_everybody(action: str, data: st.DataObjec
 def test_hands_and_feet_neither_slide_nor_sink_on_floor_and_mat(action: str, age: float, sex: Sex) -> None:
     subject = pupil(age, sex)
     motion = perform(Performance(action), subject)
-    assert_borne(motion, subject, measured(motion, subject, every=1000), action == "forward_roll", sinks_m=0.010)
+    assert_borne(
+        motion, subject, measured(motion, subject, every=1000), action == "forward_roll", sinks_m=0.010 if age < 18 else 0.015
+    )
 
 
 @pytest.mark.slow
@@ -121,13 +125,13 @@ def test_the_roll_rolls_from_nape_to_seat_and_the_back_does_not_slide(age: float
     subject = pupil(age, sex)
     motion = perform(Performance("forward_roll"), subject)
     ((first, last),) = intervals(motion.contacts[:, CONTACTS.index("trunk")])
-    rest = subject.body.rest_vertices_m
-    skin = [subject.body.vertices_m(motion.pose(number)) for number in range(first, last)]
-    places = np.array(skin)
+    trunk = trunk_skin(figure_of(subject))
+    rest = subject.body.rest_vertices_m[trunk]
+    places = np.array([subject.body.vertices_m(motion.pose(number))[trunk] for number in range(first, last)])
     lowest = places[..., 2].argmin(1)
     on_body, on_mat = rest[lowest, 2], places[np.arange(len(places)), lowest, 0]
     assert on_body[0] > 0.2 * subject.body.stature_m, "begins on the nape or the upper back"
-    assert on_body[-1] < 0.03, "ends on the seat"
+    assert on_body[-1] < 0.02 * subject.body.stature_m, "ends on the seat"
     assert (on_body - np.minimum.accumulate(on_body)).max() < 0.035 * subject.body.stature_m, (
         "from one end of the back to the other"
     )
