@@ -1,7 +1,7 @@
 """From where the pose network's points lie on the body to the body's own COCO points: the landmark bias is taken off.
 
 A network puts a hip where people clicked hips in pictures, which is not where a body has it. On the body that difference is nearly
-the same in all views and poses (`models.skeleton.landmark_bias`), so it can be taken off joints in space.
+the same in all views and poses (`services.fusion.landmark_bias`), so it can be taken off joints in space.
 """
 
 from dataclasses import replace

@@ -8,9 +8,9 @@ import pytest
 from models.arrays import Float
 from models.messages.motion import JointState, Motion
 from models.skeleton import coco
-from models.skeleton.landmark_bias import THUNDER
 from models.skeleton.segment_axes import segment_axes, trunk_length_m
 from services.fusion.config import PRESETS, FusionConfig
+from services.fusion.landmark_bias import THUNDER
 from services.fusion.landmarks import corrected
 from services.fusion.pipeline import initial_state, step
 from services.fusion.verdict import Pose

@@ -6,7 +6,7 @@ attempts. Crops are told by the truth, with the margin that fusion's predictions
 trunk, as the box turns them. `within5_pct.thunder.upright` is over all visible joints of the eight upright actions.
 
 `bias_mm.<joint>`: length of the landmark bias, of Thunder in rotated crops over all actions (see `tests.bench.landmarks`); a joint
-stands for left and right. `--corrections` measures it on development pupils and writes `models/skeleton/landmark_bias.py`.
+stands for left and right. `--corrections` measures it on development pupils and writes `services/fusion/landmark_bias.py`.
 """
 
 import argparse
@@ -37,7 +37,7 @@ def main() -> int:
     """Measure, print, write; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True)
-    parser.add_argument("--corrections", action="store_true", help="write models/skeleton/landmark_bias.py")
+    parser.add_argument("--corrections", action="store_true", help="write services/fusion/landmark_bias.py")
     parser.add_argument("--seeds", type=int, default=SEEDS, help="pupils; the figures of record are of five")
     options = parser.parse_args()
     seeds = tuple(range(options.seeds))

@@ -8,7 +8,7 @@ import numpy as np
 from models.skeleton import coco
 from tests.bench.landmarks import Bias, as_points
 
-PATH: Final = Path(__file__).parents[3] / "models/skeleton/landmark_bias.py"
+PATH: Final = Path(__file__).parents[3] / "services/fusion/landmark_bias.py"
 _HEAD: Final = '''"""Where a pose network's points lie on the body, against the body's own COCO points: the landmark bias.
 
 Written by `python -m tests.bench.networks --data build --corrections`, from PUPILS simulated development pupils who perform every

@@ -36,7 +36,7 @@ import numpy as np
 from edge.simulation.plan import Plan
 from edge.simulation.presets import SIX_ACTIONS, acceptance
 from models.errors import UserError
-from models.skeleton.landmark_bias import THUNDER
+from services.fusion.landmark_bias import THUNDER
 from tests.bench.datasets import h36m, panoptic
 from tests.bench.metrics.position import margin_pct
 from tests.bench.reconstruct import on_shelf
