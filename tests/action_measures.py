@@ -89,9 +89,9 @@ def clear_no_follow_through(seen: Seen) -> float:
 
 
 def spike_arm_not_back(seen: Seen) -> float:
-    """How far behind the shoulders the elbow gets before the hit."""
-    elbow = seen.in_chest(seen.joint("right_elbow") - seen.joint("right_shoulder"))[seen.peak - round(0.16 * RATE_HZ) : seen.peak]
-    return float(elbow[:, 0].min())
+    """How far before the shoulders the elbow is, on the average of the tenth of a second in which it should be behind them."""
+    drawn = slice(seen.peak - round(0.16 * RATE_HZ), seen.peak - round(0.06 * RATE_HZ))
+    return float(seen.in_chest(seen.joint("right_elbow") - seen.joint("right_shoulder"))[drawn, 0].mean())
 
 
 def spike_hit_behind(seen: Seen) -> float:
