@@ -79,25 +79,10 @@ def render_lesson(plan: Plan, folder: Path, progress: Progress, look: Look = AS_
         if is_rendered(folder, wanted):  # Somebody else was faster.
             return False
         graphics()  # Who cannot render shall hear it at once.
-        stage = set_stage(plan)
-        job = Job(
-            fingerprint=wanted,
-            noisy=look.noisy,
-            quality=look.quality,
-            cameras=stage.rig.names,
-            size_px=tuple(camera.size_px for camera in stage.rig),
-            pictures=picture_count(plan, stage.length_s),
-            per_piece=max(1, round(PIECE_S * plan.rate_hz)),
-            rate_hz=plan.rate_hz,
-        )
-        _begin(part, plan, job)
+        job = _begin(part, plan, wanted, look, folder)
         _render_pieces(part, job, progress)
         films = [join_film(part, job, camera) for camera in job.cameras]
         truth = join_truth(part, job)
-        rig = encode_rig(stage.rig, f"lesson plan {plan.name}, rig {plan.rig}: where the cameras were said to be")
-        write_whole(part / RIG_NAME, rig)
-        write_whole(part / ATTEMPTS_NAME, encode_attempts(stage.attempts))
-        write_whole(part / SITE_NAME, site_of(f"Simulated lesson {plan.name}", job.cameras, folder.resolve(), RIG_NAME))
         (part / JOB_NAME).unlink()
         names = (PLAN_NAME, RIG_NAME, SITE_NAME, ATTEMPTS_NAME)
         Index.of(wanted, [*(part / name for name in names), truth, *films]).write(part)
@@ -122,16 +107,36 @@ def _require_replaceable(folder: Path) -> None:
         raise UserError(f"{folder} is there already and is no rendered lesson; name another folder with --out")
 
 
-def _begin(part: Path, plan: Plan, job: Job) -> None:
-    """Make the folder ready: what another plan or recipe has left in it is removed."""
+def _begin(part: Path, plan: Plan, wanted: str, look: Look, folder: Path) -> Job:
+    """Make the folder ready: what another plan or recipe has left in it is removed. The stage is gone when this returns."""
+    stage = set_stage(plan)
+    job = Job(
+        fingerprint=wanted,
+        noisy=look.noisy,
+        quality=look.quality,
+        cameras=stage.rig.names,
+        size_px=tuple(camera.size_px for camera in stage.rig),
+        pictures=picture_count(plan, stage.length_s),
+        per_piece=max(1, round(PIECE_S * plan.rate_hz)),
+        rate_hz=plan.rate_hz,
+    )
     before = None
     with contextlib.suppress(FileNotFoundError, msgspec.DecodeError):
         before = msgspec.json.decode((part / JOB_NAME).read_bytes(), type=Job)
     for path in part.iterdir():
         if before != job or path.name.endswith(PART_SUFFIX):
             path.unlink()
+    _require_room(part, job)
+    rig = encode_rig(stage.rig, f"lesson plan {plan.name}, rig {plan.rig}: where the cameras were said to be")
     write_whole(part / PLAN_NAME, encode_plan(plan))
+    write_whole(part / RIG_NAME, rig)
+    write_whole(part / ATTEMPTS_NAME, encode_attempts(stage.attempts))
+    write_whole(part / SITE_NAME, site_of(f"Simulated lesson {plan.name}", job.cameras, folder.resolve(), RIG_NAME))
     write_whole(part / JOB_NAME, msgspec.json.encode(job))
+    return job
+
+
+def _require_room(part: Path, job: Job) -> None:
     left = len(missing(part, job)) / len(job.pieces)
     pixels = job.pictures * sum(width * height for width, height in job.size_px)
     # A quarter of a byte a pixel, and one camera's pieces and film at a time.
