@@ -33,7 +33,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions lock clean distclean test-faults test-mutations bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-networks twin
+.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions lock clean distclean test-faults test-mutations test-motions bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-networks twin
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
@@ -114,6 +114,9 @@ test-faults: setup $(FILM_OF_footage) ## The box killed, stopped and starved: ev
 
 test-mutations: setup ## 100,000 mutated messages on each topic and on the tablet's socket
 	$(PYTHON) -m pytest -m mutations tests/mutations
+
+test-motions: $(VENV)/.ready ## Simulated pupils of all ages perform every action in every way; every fault and its size
+	$(PYTHON) -m pytest -n 2 -m motions tests/property
 
 bench-faults: setup $(FILM_OF_footage) ## Recovery and lost recording over 20 runs of each fault drill; some 45 minutes (--drills, --runs in ARGS)
 	$(PYTHON) -m tests.bench.faults --data $(DATA) $(ARGS)

@@ -63,6 +63,7 @@ def test_the_floor_bears_the_body_and_never_holds_it_down(action: str, age: floa
 
 
 @pytest.mark.slow
+@pytest.mark.motions
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("action", UPRIGHT)
 @given(data=st.data(), subject=SUBJECTS)
@@ -120,6 +121,7 @@ def test_tempo_shortens_what_muscles_do_and_leaves_gravity_alone(action: str) ->
 
 
 @pytest.mark.slow
+@pytest.mark.motions
 @pytest.mark.parametrize("sex_age", [("female", 8), ("male", 30)])
 @pytest.mark.parametrize(("action", "fault"), [(action, fault) for action in UPRIGHT for fault in MEASURES[action]])
 def test_a_fault_grows_with_its_severity(action: str, fault: str, sex_age: tuple[Sex, float]) -> None:
@@ -132,6 +134,7 @@ def test_a_fault_grows_with_its_severity(action: str, fault: str, sex_age: tuple
 
 
 @pytest.mark.slow
+@pytest.mark.motions
 @pytest.mark.parametrize(("action", "fault"), [(action, fault) for action in UPRIGHT for fault in MEASURES[action]])
 def test_natural_variation_is_nearer_to_the_standard_than_to_the_fault(action: str, fault: str) -> None:
     subject = pupil(11, "male")

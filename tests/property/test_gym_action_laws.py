@@ -90,6 +90,7 @@ def test_feet_stand_and_bodies_fly(action: str) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.motions
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("action", STANDING)
 @given(data=st.data(), subject=SUBJECTS)
@@ -110,6 +111,7 @@ def test_hands_and_feet_neither_slide_nor_sink_on_floor_and_mat(action: str, age
 
 
 @pytest.mark.slow
+@pytest.mark.motions
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("action", FLOOR)
 @given(data=st.data(), subject=SUBJECTS)
@@ -206,6 +208,7 @@ def test_who_is_left_handed_does_the_mirrored_motion(action: str) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.motions
 @pytest.mark.parametrize("sex_age", [("female", 8), ("male", 15)])
 @pytest.mark.parametrize(("action", "fault"), [(action, fault) for action, faults in MEASURES.items() for fault in faults])
 def test_a_fault_grows_with_its_severity(action: str, fault: str, sex_age: tuple[Sex, float]) -> None:
@@ -218,6 +221,7 @@ def test_a_fault_grows_with_its_severity(action: str, fault: str, sex_age: tuple
 
 
 @pytest.mark.slow
+@pytest.mark.motions
 @pytest.mark.parametrize("action", tuple(MEASURES))
 def test_natural_variation_is_nearer_to_the_standard_than_to_any_fault(action: str) -> None:
     subject = pupil(11, "male")
