@@ -52,7 +52,8 @@ def whole_log(folder: Path) -> list[Line]:
     return lines
 
 
-def raw_lines(folder: Path) -> list[dict[str, Any]]:
-    """Every line of a log's files, read without any of our code; a line that is no JSON fails."""
+def raw_lines(folder: Path, *, torn: bool = False) -> list[dict[str, Any]]:
+    """Every line of a log's files, read without any of our code; a line that is no JSON fails, or is left out where some may be torn."""
     files = sorted(folder.glob("kinebox-*.log"))
-    return [json.loads(line) for file in files for line in file.read_text().split("\n") if line]
+    lines = [line for file in files for line in file.read_text().split("\n") if line]
+    return [json.loads(line) for line in lines if not torn or line.endswith("}")]

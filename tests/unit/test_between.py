@@ -81,7 +81,7 @@ def test_passing_time_keeps_the_feet_where_they_are_and_ends_on_time(how: Pastim
     assert motion.duration_s == pytest.approx(2.6, abs=0.5 / RATE_HZ)
     assert motion.attempts == ()
     assert_obeys_the_floor(motion, skin, subject)
-    assert_is_human(motion, subject, fastest_m_s=10.0)
+    assert_is_human(motion, subject, fastest_m_s=11.0)
     assert_ends_standing(motion, subject, Standpoint())
     figure = Figure(subject)
     weight = figure.centres_of_mass_m(figure.place(motion.translations_m, motion.rotations_rad))[::EVERY_S, :2]

@@ -275,7 +275,8 @@ def test_following_over_new_files_and_killed_writers_loses_and_doubles_nothing(t
         assert 0 <= followed[-1] - told[-1] <= 1
         first = followed[-1] + 1
     assert len(log_numbers(folder)) > 10
-    assert [line["number"] for line in raw_lines(folder)] == followed == list(range(first))
+    # A writer that is killed while it writes may leave half a line, which it has told nobody of.
+    assert [line["number"] for line in raw_lines(folder, torn=True)] == followed == list(range(first))
 
 
 def test_the_follower_of_a_log_that_does_not_exist_yet_sees_its_first_line(tmp_path: Path) -> None:
