@@ -53,7 +53,7 @@ def whole_log(folder: Path) -> list[Line]:
 
 
 def raw_lines(folder: Path, *, torn: bool = False) -> list[dict[str, Any]]:
-    """Every line of a log's files, read without any of our code; a line that is no JSON fails, or is left out where some may be torn."""
+    """Every line of a log's files, read without any of our code; one that is no JSON fails, or is left out where some are torn."""
     files = sorted(folder.glob("kinebox-*.log"))
     lines = [line for file in files for line in file.read_text().split("\n") if line]
     return [json.loads(line) for line in lines if not torn or line.endswith("}")]
