@@ -33,7 +33,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions lock clean distclean test-faults test-mutations test-motions bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-networks twin
+.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions lock clean distclean test-faults test-mutations test-motions test-rendering bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-networks twin
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
@@ -117,6 +117,9 @@ test-mutations: setup ## 100,000 mutated messages on each topic and on the table
 
 test-motions: $(VENV)/.ready ## Simulated pupils of all ages perform every action in every way; every fault and its size
 	$(PYTHON) -m pytest -n 2 -m motions tests/property
+
+test-rendering: setup ## Lessons rendered, found again, broken off and out of disk
+	$(PYTHON) -m pytest -m rendering tests/integration
 
 bench-faults: setup $(FILM_OF_footage) ## Recovery and lost recording over 20 runs of each fault drill; some 45 minutes (--drills, --runs in ARGS)
 	$(PYTHON) -m tests.bench.faults --data $(DATA) $(ARGS)

@@ -29,7 +29,7 @@ from tests.integration.waiting import free_port, until
 from tests.lifeline import bound
 from tests.system.test_box import Box
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(300), pytest.mark.rendering]
 
 CONTENT = {"cam01.avi", "cam02.avi", PLAN_NAME, RIG_NAME, SITE_NAME, TRUTH_NAME, ATTEMPTS_NAME, INDEX_NAME}
 
