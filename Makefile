@@ -76,8 +76,8 @@ $(DATA)/networks/installed.json: models/networks/manifest.toml $(wildcard models
 film: $(FILM_OF_$(SOURCE)) # what SOURCE plays, if it is built in
 
 simulated: $(FILM_OF_simulated) ## Prepare the built-in simulated lesson
-$(FILM_OF_simulated): edge/simulation/shipped.py edge/simulation/shipped_worker.py $(wildcard edge/simulation/six_actions/*) | $(VENV)/.ready
-	@$(PYTHON) -m edge.simulation.shipped --data $(DATA)
+$(FILM_OF_simulated): edge/simulation/shipped/install.py edge/simulation/shipped/worker.py $(wildcard edge/simulation/shipped/six_actions/*) | $(VENV)/.ready
+	@$(PYTHON) -m edge.simulation.shipped.install --data $(DATA)
 	@touch $@
 
 footage: $(FILM_OF_$(filter footage%,$(SOURCE))) ## Fetch and prepare the built-in footage that SOURCE names
@@ -188,7 +188,7 @@ check-motions: build/motions/.ready ## Compare the recorded motion with a fresh 
 
 .PHONY: strips
 strips: $(VENV)/.ready ## Film every action with its faults anew, for docs/actions
-	$(PYTHON) -m edge.simulation.strip
+	$(PYTHON) -m edge.simulation.rendering.strip
 
 lock: ## Compile requirements.lock anew after a change of pyproject.toml
 	$(PYTHON) -m venv build/lock && build/lock/bin/pip install --quiet uv

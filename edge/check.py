@@ -10,8 +10,8 @@ from pathlib import Path
 from edge.cameras.shape import VideoShape, read_avi_shape, require_calibrated_size, require_equal_lengths
 from edge.footage.index import Index, remedy
 from edge.perception.network_file import read_network_file
-from edge.simulation.files import film_path
-from edge.simulation.plan import read_plan
+from edge.simulation.lesson.files import film_path
+from edge.simulation.lesson.plan import read_plan
 from models.camera.rig import Rig
 from models.config.site import CameraConfig, Site
 from models.errors import UserError

@@ -12,8 +12,8 @@ from edge.cameras.shape import VideoShape, require_calibrated_size, require_equa
 from edge.check import NETWORKS, check_video, film_of
 from edge.footage.index import INDEX_NAME, Index, remedy
 from edge.perception.network_file import read_network_file
-from edge.simulation.files import FOLDER as LESSONS
-from edge.simulation.files import SHIPPED
+from edge.simulation.lesson.files import FOLDER as LESSONS
+from edge.simulation.lesson.files import SHIPPED
 from models.camera.rig import Rig
 from models.config.site import CameraConfig, Site
 from models.errors import UserError

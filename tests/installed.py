@@ -7,8 +7,8 @@ import pytest
 
 from edge.footage.prepare import is_ready
 from edge.footage.sets import ONE_PERSON, Footage
-from edge.simulation.graphics import graphics
-from edge.simulation.shipped import is_installed
+from edge.simulation.picture.graphics import graphics
+from edge.simulation.shipped.install import is_installed
 from models.errors import UserError
 
 ROOT = Path(__file__).parents[1]

@@ -5,8 +5,8 @@ from pathlib import Path
 
 from edge.footage.index import Index
 from edge.footage.transcode import write_motion_jpeg
-from edge.simulation.files import PLAN_NAME, film_path
-from edge.simulation.plan import PLAN_VERSION, Plan, PupilPlan, encode_plan
+from edge.simulation.lesson.files import PLAN_NAME, film_path
+from edge.simulation.lesson.plan import PLAN_VERSION, Plan, PupilPlan, encode_plan
 from tests.small_video import SIZE_PX, plain_picture
 
 CAMERAS = ("cam01", "cam02", "cam03")

@@ -13,9 +13,9 @@ from edge.cameras.faulty import SECOND_NS, FaultySource, Script
 from edge.cameras.shape import VideoShape
 from edge.cameras.source import Clock, Source
 from edge.cameras.video import Pictures, Video, VideoSource, load_video
-from edge.simulation.files import film_path
-from edge.simulation.plan import Plan, read_plan
-from edge.simulation.world_faults import delivery_faults, picture_times_s, shown_by
+from edge.simulation.lesson.files import film_path
+from edge.simulation.lesson.plan import Plan, read_plan
+from edge.simulation.lesson.world_faults import delivery_faults, picture_times_s, shown_by
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from edge.simulation.files import FOLDER, SHIPPED
+from edge.simulation.lesson.files import FOLDER, SHIPPED
 from models.make_command import make_command
 
 INDEX_NAME = "installed.json"

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from edge.simulation.files import SITE_NAME
-from edge.simulation.plan import Plan, decode_plan
-from edge.simulation.plan_check import require_sound
-from edge.simulation.presets import PRESETS
-from edge.simulation.render_lesson import folder_of, render_lesson
+from edge.simulation.lesson.files import SITE_NAME
+from edge.simulation.lesson.plan import Plan, decode_plan
+from edge.simulation.lesson.plan_check import require_sound
+from edge.simulation.lesson.presets import PRESETS
+from edge.simulation.rendering.render_lesson import folder_of, render_lesson
 from models.commands import LessonPlan, Progress, RenderedLesson
 from models.errors import UserError
 

@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Final
 
-from edge.simulation.presets import acceptance
+from edge.simulation.lesson.presets import acceptance
 from edge.simulation.split import Split
 from models.errors import UserError
 from tests.bench.reconstruct.lesson import Lesson

@@ -9,17 +9,17 @@ import pytest
 from edge.perception.crop import crop_from_box, cut, reduction_for
 from edge.perception.detection import load_person_detector
 from edge.perception.pose import load_pose_network
-from edge.simulation.avatar import Avatar
-from edge.simulation.casting import cast
-from edge.simulation.gym import make_gym
-from edge.simulation.renderer import Renderer
-from edge.simulation.rigs import make_rig
-from edge.simulation.scene import Scene
-from edge.simulation.sensor import Sensor
-from edge.simulation.shutter import Shutter
+from edge.simulation.gym.hall import make_gym
+from edge.simulation.people.avatar import Avatar
+from edge.simulation.people.casting import cast
+from edge.simulation.picture.renderer import Renderer
+from edge.simulation.picture.scene import Scene
+from edge.simulation.picture.sensor import Sensor
+from edge.simulation.picture.shutter import Shutter
+from edge.simulation.rigs.arrangements import make_rig
 from edge.simulation.split import SPLITS, Split
-from edge.simulation.truth import Truth
-from edge.simulation.witness import Witness
+from edge.simulation.truth.truth import Truth
+from edge.simulation.truth.witness import Witness
 from models.arrays import UInt8
 from models.camera.pinhole import Camera
 from models.motions.perform import perform

@@ -6,9 +6,9 @@ import msgspec
 import numpy as np
 import pytest
 
-from edge.simulation.plan import PerformancePlan, Plan, PupilPlan, ShutterPlan
-from edge.simulation.presets import tiny
-from edge.simulation.stage import set_stage
+from edge.simulation.lesson.plan import PerformancePlan, Plan, PupilPlan, ShutterPlan
+from edge.simulation.lesson.presets import tiny
+from edge.simulation.lesson.stage import set_stage
 from models.errors import UserError
 from models.skeleton import coco
 from tests.bench.reconstruct.lesson import START_NS

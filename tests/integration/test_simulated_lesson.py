@@ -16,12 +16,12 @@ import tomlkit
 
 from edge.cameras.video import load_video
 from edge.footage.index import INDEX_NAME, Index
-from edge.simulation import truth_file
-from edge.simulation.attempts import read_attempts
 from edge.simulation.command import simulation
-from edge.simulation.files import ATTEMPTS_NAME, FOLDER, PLAN_NAME, RIG_NAME, SITE_NAME, TRUTH_NAME, film_path
-from edge.simulation.plan import Plan, encode_plan
-from edge.simulation.presets import tiny
+from edge.simulation.lesson.attempts import read_attempts
+from edge.simulation.lesson.files import ATTEMPTS_NAME, FOLDER, PLAN_NAME, RIG_NAME, SITE_NAME, TRUTH_NAME, film_path
+from edge.simulation.lesson.plan import Plan, encode_plan
+from edge.simulation.lesson.presets import tiny
+from edge.simulation.truth import truth_file
 from models.camera.rig import decode_rig
 from models.errors import USER_ERROR_CODE
 from tests.installed import ROOT, require_graphics, require_networks

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from edge.simulation.renderer import LinearPicture
-from edge.simulation.scene import Lamp, Pupil, Scene
+from edge.simulation.picture.renderer import LinearPicture
+from edge.simulation.picture.scene import Lamp, Pupil, Scene
 from edge.simulation.surface import Surface
 from models.arrays import Float
 from tests.synthetic.moving_scene import sphere

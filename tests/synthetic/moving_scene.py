@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from edge.simulation.scene import Lamp, Scene
+from edge.simulation.picture.scene import Lamp, Scene
 from edge.simulation.surface import Surface, Texture
 from models.arrays import Float
 from models.body.model import Body

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from edge.simulation.scene import Scene
-from edge.simulation.shutter import Shutter
+from edge.simulation.picture.scene import Scene
+from edge.simulation.picture.shutter import Shutter
 from models.arrays import Float
 from models.camera.pinhole import Camera
 

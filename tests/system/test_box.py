@@ -125,7 +125,8 @@ def limb_lengths_m(frame: MotionFrame) -> Float:
 
 def heights_mm(frame: MotionFrame, name: str) -> Float:
     """(2,) heights of the left and the right joint; they are limbs' ends, so `pose` waits until they are seen."""
-    return frame.positions_mm[[coco.INDEX[f"left_{name}"], coco.INDEX[f"right_{name}"]], 2]
+    heights: Float = frame.positions_mm[[coco.INDEX[f"left_{name}"], coco.INDEX[f"right_{name}"]], 2].astype(np.float64)
+    return heights
 
 
 def test_footage_becomes_a_figure_of_human_proportions_that_moves(tmp_path: Path) -> None:

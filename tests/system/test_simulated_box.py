@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from edge.simulation import truth_file
-from edge.simulation.files import FOLDER, SHIPPED, TRUTH_NAME
+from edge.simulation.lesson.files import FOLDER, SHIPPED, TRUTH_NAME
+from edge.simulation.truth import truth_file
 from models.skeleton import coco
 from tests.installed import ROOT, require_lesson
 from tests.system.test_box import limb_lengths_m, running, tablet

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from edge.simulation.shutter import Shutter
+from edge.simulation.picture.shutter import Shutter
 from models.arrays import Float
 from models.body.model import Body
 from models.body.pose import Pose

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from edge.simulation.shutter import Shutter
+from edge.simulation.picture.shutter import Shutter
 from models.arrays import Bool, Float
 from models.camera.rig import Rig
 from models.skeleton import coco

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from edge.simulation.command import find_plan
-from edge.simulation.plan import Pastime, Plan, decode_plan, encode_plan, fingerprint, schema
-from edge.simulation.plan_check import require_sound
-from edge.simulation.presets import PRESETS, acceptance, six_actions, tiny
+from edge.simulation.lesson.plan import Pastime, Plan, decode_plan, encode_plan, fingerprint, schema
+from edge.simulation.lesson.plan_check import require_sound
+from edge.simulation.lesson.presets import PRESETS, acceptance, six_actions, tiny
 from edge.simulation.split import SPLITS
 from models.errors import UserError
 from models.motions.between import PASTIMES

@@ -13,17 +13,17 @@ import pytest
 
 from edge.cameras.video import load_video
 from edge.footage.transcode import encode_jpeg
-from edge.simulation.files import TRUTH_NAME, film_path
-from edge.simulation.pieces import Job, alone_in, join_film, join_truth, keep_pictures, keep_truth, missing, write_whole
-from edge.simulation.shutter import Shutter
-from edge.simulation.truth import LessonTruth
-from edge.simulation.workers import do_pieces
+from edge.simulation.lesson.files import TRUTH_NAME, film_path
+from edge.simulation.picture.shutter import Shutter
+from edge.simulation.rendering.pieces import Job, alone_in, join_film, join_truth, keep_pictures, keep_truth, missing, write_whole
+from edge.simulation.rendering.workers import do_pieces
+from edge.simulation.truth.truth import LessonTruth
 from models.errors import UserError
 from tests.small_video import SIZE_PX, plain_picture
 
 WORKER = """
 import os, pathlib, sys, time
-from edge.simulation.workers import serve_pieces
+from edge.simulation.rendering.workers import serve_pieces
 from models.errors import UserError
 def do(piece, step_done):
     for _ in range(3):
@@ -73,7 +73,9 @@ def test_what_goes_wrong_in_a_worker_is_said_and_the_others_end(
 
 
 def test_workers_end_by_themselves_when_who_started_them_is_killed(tmp_path: Path) -> None:
-    code = "import sys; from edge.simulation.workers import do_pieces; do_pieces(eval(sys.argv[1]), [99, 99], 2, lambda: None)"
+    code = (
+        "import sys; from edge.simulation.rendering import workers; workers.do_pieces(eval(sys.argv[1]), [99, 99], 2, lambda: None)"
+    )
     parent = subprocess.Popen([sys.executable, "-c", code, repr(command(tmp_path))])
     _wait_until(lambda: len(_workers(tmp_path)) == 2)
     parent.kill()

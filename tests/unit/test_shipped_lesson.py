@@ -9,18 +9,18 @@ import pytest
 
 from edge.cameras.video import load_video
 from edge.footage.transcode import write_motion_jpeg
-from edge.simulation import truth_file
-from edge.simulation.attempts import read_attempts
-from edge.simulation.build.ship import SITE, compress
-from edge.simulation.files import ATTEMPTS_NAME, FOLDER, SHIPPED, TRUTH_NAME, VIDEO_SUFFIX
-from edge.simulation.film import sensor_of
-from edge.simulation.plan import read_plan
-from edge.simulation.plan_check import require_sound
-from edge.simulation.presets import SIX_ACTIONS, six_actions
-from edge.simulation.render_lesson import JPEG_QUALITY
-from edge.simulation.shipped import SOURCE, cameras
-from edge.simulation.shipped_worker import linear_light, make_film
-from edge.simulation.stage import rig_of
+from edge.simulation.lesson.attempts import read_attempts
+from edge.simulation.lesson.files import ATTEMPTS_NAME, FOLDER, SHIPPED, TRUTH_NAME, VIDEO_SUFFIX
+from edge.simulation.lesson.plan import read_plan
+from edge.simulation.lesson.plan_check import require_sound
+from edge.simulation.lesson.presets import SIX_ACTIONS, six_actions
+from edge.simulation.lesson.stage import rig_of
+from edge.simulation.rendering.film import sensor_of
+from edge.simulation.rendering.render_lesson import JPEG_QUALITY
+from edge.simulation.shipped.install import SOURCE, cameras
+from edge.simulation.shipped.ship import SITE, compress
+from edge.simulation.shipped.worker import linear_light, make_film
+from edge.simulation.truth import truth_file
 from models.arrays import UInt8
 from models.camera.rig import decode_rig
 from models.config.site import decode_site

@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from scipy.spatial import KDTree
 
-from edge.simulation.anatomy import Anatomy
-from edge.simulation.avatar import Avatar
-from edge.simulation.casting import Member, cast
-from edge.simulation.clothing import sew_footwear, sew_legwear, sew_shirt
-from edge.simulation.hair import STYLES, Style, grow
-from edge.simulation.look import Dressed, dress
-from edge.simulation.shell import Shell, borders, clipped, edges, joined, subdivided
+from edge.simulation.people.anatomy import Anatomy
+from edge.simulation.people.avatar import Avatar
+from edge.simulation.people.casting import Member, cast
+from edge.simulation.people.clothing import sew_footwear, sew_legwear, sew_shirt
+from edge.simulation.people.hair import STYLES, Style, grow
+from edge.simulation.people.look import Dressed, dress
+from edge.simulation.people.shell import Shell, borders, clipped, edges, joined, subdivided
 from edge.simulation.split import SPLITS, Split
 from models.arrays import Float
 from models.body.model import Body

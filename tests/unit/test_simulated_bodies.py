@@ -4,9 +4,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from edge.simulation.casting import body_model, cast
-from edge.simulation.off_model import CENTRE_MOVED_M, LIMB_RATIO, Alteration, altered, draw_alteration
-from edge.simulation.shell import edges
+from edge.simulation.people.casting import body_model, cast
+from edge.simulation.people.off_model import CENTRE_MOVED_M, LIMB_RATIO, Alteration, altered, draw_alteration
+from edge.simulation.people.shell import edges
 from edge.simulation.split import SPLITS, Split
 from models.arrays import Float
 from models.body import LARGE

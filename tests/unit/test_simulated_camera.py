@@ -10,10 +10,10 @@ from edge.cameras.simulated import Recorded, open_simulated
 from edge.cameras.source import Frame
 from edge.check import check
 from edge.inspect import inspect
-from edge.simulation.files import PLAN_NAME, film_path
-from edge.simulation.plan import Plan, ShutterPlan, SwapPlan
-from edge.simulation.stage import rig_of
-from edge.simulation.world_faults import phase_s
+from edge.simulation.lesson.files import PLAN_NAME, film_path
+from edge.simulation.lesson.plan import Plan, ShutterPlan, SwapPlan
+from edge.simulation.lesson.stage import rig_of
+from edge.simulation.lesson.world_faults import phase_s
 from models.config.site import SITE_VERSION, CameraConfig, FaultConfig, Site, decode_site
 from models.errors import UserError
 from tests.lesson_folder import CAMERAS, PICTURES, draw_lesson, plan_with

@@ -9,7 +9,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 OPEN = """
-from edge.simulation.graphics import graphics
+from edge.simulation.picture.graphics import graphics
 from models.errors import UserError
 try:
     graphics()
@@ -18,7 +18,9 @@ except UserError as error:
 """
 BLOCKED = "import sys; sys.modules['moderngl'] = None\n"
 WITHOUT_GRAPHICS = """
-import edge.simulation.witness, edge.simulation.truth_file, edge.simulation.sensor, edge.simulation.rigs, edge.simulation.renderer
+import edge.simulation.truth.witness, edge.simulation.truth.truth_file
+import edge.simulation.picture.sensor, edge.simulation.picture.renderer
+import edge.simulation.rigs.arrangements
 print("all there")
 """
 

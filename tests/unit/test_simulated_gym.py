@@ -4,17 +4,17 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from edge.simulation.casting import cast
-from edge.simulation.court import PX_PER_M, Court, paint_floor
-from edge.simulation.furniture import BOX_HEIGHT_M, bench, mat, net, vaulting_box
-from edge.simulation.gym import FREE_RADIUS_M, Gym, make_gym
-from edge.simulation.rigs import NAMES, make_rig
-from edge.simulation.scene import Scene
-from edge.simulation.shell import borders
-from edge.simulation.solids import Heap, placed, sphere
+from edge.simulation.gym.court import PX_PER_M, Court, paint_floor
+from edge.simulation.gym.furniture import BOX_HEIGHT_M, bench, mat, net, vaulting_box
+from edge.simulation.gym.hall import FREE_RADIUS_M, Gym, make_gym
+from edge.simulation.gym.solids import Heap, placed, sphere
+from edge.simulation.gym.things import PlayedThing, surface_of
+from edge.simulation.people.casting import cast
+from edge.simulation.people.shell import borders
+from edge.simulation.picture.scene import Scene
+from edge.simulation.rigs.arrangements import NAMES, make_rig
 from edge.simulation.split import SPLITS, Split
 from edge.simulation.surface import Surface
-from edge.simulation.things import PlayedThing, surface_of
 from models.arrays import Float
 from models.motions import things as sizes
 from models.motions.motion import RATE_HZ, Thing, ThingKind

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from edge.simulation.lens import NEAR_M, lens_of
-from edge.simulation.meshes import corners_of, near_rim, normals, welded
-from edge.simulation.tessellation import TOLERANCE_PX, tessellate
+from edge.simulation.picture.lens import NEAR_M, lens_of
+from edge.simulation.picture.meshes import corners_of, near_rim, normals, welded
+from edge.simulation.picture.tessellation import TOLERANCE_PX, tessellate
 from models.errors import UserError
 from tests.synthetic.moving_scene import BARREL, look_at, quad, room, sphere
 

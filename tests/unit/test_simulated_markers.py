@@ -5,12 +5,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from edge.simulation.lens import lens_of
-from edge.simulation.renderer import Renderer
-from edge.simulation.rigs import NAMES, make_rig
-from edge.simulation.scene import Pupil, Scene
-from edge.simulation.shutter import Shutter
-from edge.simulation.witness import Witness
+from edge.simulation.picture.lens import lens_of
+from edge.simulation.picture.renderer import Renderer
+from edge.simulation.picture.scene import Pupil, Scene
+from edge.simulation.picture.shutter import Shutter
+from edge.simulation.rigs.arrangements import NAMES, make_rig
+from edge.simulation.truth.witness import Witness
 from models.arrays import Float
 from models.camera.pinhole import Camera
 from models.motions.actions.library import ACTIONS

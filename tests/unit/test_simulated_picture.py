@@ -6,12 +6,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from edge.simulation.dense import DensePainter
-from edge.simulation.renderer import Renderer, View
-from edge.simulation.scene import Scene
-from edge.simulation.sensor import Sensor
-from edge.simulation.shadows import NO_GROUND
-from edge.simulation.shutter import Shutter
+from edge.simulation.picture.renderer import Renderer, View
+from edge.simulation.picture.scene import Scene
+from edge.simulation.picture.sensor import Sensor
+from edge.simulation.picture.shadows import NO_GROUND
+from edge.simulation.picture.shutter import Shutter
+from edge.simulation.truth.dense import DensePainter
 from models.arrays import Bool
 from models.camera.pinhole import Camera
 from tests.installed import require_graphics

@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from edge.simulation.rigs import ACTING_RADIUS_M, NAMES, TALLEST_M, make_rig
+from edge.simulation.rigs.arrangements import ACTING_RADIUS_M, NAMES, TALLEST_M, make_rig
 from edge.simulation.split import SPLITS, Split
 from models.camera.rig import decode_rig, encode_rig
 from models.errors import UserError

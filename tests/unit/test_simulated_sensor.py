@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from edge.simulation.sensor import Sensor
+from edge.simulation.picture.sensor import Sensor
 from models.arrays import Float, Float32
 
 SHAPE = (120, 160, 3)

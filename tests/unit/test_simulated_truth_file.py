@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from edge.simulation.shutter import Shutter
-from edge.simulation.truth import LessonTruth, Truth, joined, joined_lesson
-from edge.simulation.truth_file import _SHAPES, decode, encode, read
-from edge.simulation.visibility import Seen
+from edge.simulation.picture.shutter import Shutter
+from edge.simulation.truth.truth import LessonTruth, Truth, joined, joined_lesson
+from edge.simulation.truth.truth_file import _SHAPES, decode, encode, read
+from edge.simulation.truth.visibility import Seen
 from models.errors import UserError
 
 

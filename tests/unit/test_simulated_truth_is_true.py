@@ -5,10 +5,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from edge.simulation.dense import NOTHING, Dense, DensePainter, flow_px, rest_places_m, surfaces_of
-from edge.simulation.renderer import Renderer, View
-from edge.simulation.scene import Scene
-from edge.simulation.shutter import Shutter
+from edge.simulation.picture.renderer import Renderer, View
+from edge.simulation.picture.scene import Scene
+from edge.simulation.picture.shutter import Shutter
+from edge.simulation.truth.dense import NOTHING, Dense, DensePainter, flow_px, rest_places_m, surfaces_of
 from models.arrays import Bool
 from tests.installed import require_graphics
 from tests.synthetic.moving_scene import look_at, moving_scene

@@ -5,12 +5,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from edge.simulation.lens import lens_of
-from edge.simulation.scene import Scene
-from edge.simulation.shutter import Shutter
-from edge.simulation.truth import Truth
-from edge.simulation.visibility import Seen, first_surfaces, judge, reach_m
-from edge.simulation.witness import Witness
+from edge.simulation.picture.lens import lens_of
+from edge.simulation.picture.scene import Scene
+from edge.simulation.picture.shutter import Shutter
+from edge.simulation.truth.truth import Truth
+from edge.simulation.truth.visibility import Seen, first_surfaces, judge, reach_m
+from edge.simulation.truth.witness import Witness
 from models.arrays import Float
 from tests.synthetic.moving_scene import Flinger, look_at, moving_scene
 from tests.synthetic.ray_cast import RayCaster

@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from edge.simulation.indexed_png import encode_indexed
-from edge.simulation.strip import FOLDER, PAGE, moments_s, page, performances
+from edge.simulation.picture.indexed_png import encode_indexed
+from edge.simulation.rendering.strip import FOLDER, PAGE, moments_s, page, performances
 from models.arrays import UInt8
 from models.motions.actions.library import ACTIONS
 from models.motions.motion import Attempt
@@ -55,7 +55,7 @@ def test_every_fault_has_a_row_and_a_line(name: str) -> None:
 
 @pytest.mark.slow
 def test_the_page_is_as_the_actions_are_now() -> None:
-    assert (ROOT / FOLDER / PAGE).read_text() == page(), "run `python -m edge.simulation.strip --page`, or `make strips`"
+    assert (ROOT / FOLDER / PAGE).read_text() == page(), "run `python -m edge.simulation.rendering.strip --page`, or `make strips`"
 
 
 @pytest.mark.slow

@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from edge.simulation.shutter import Shutter
+from edge.simulation.picture.shutter import Shutter
 from models.arrays import Float
 from models.camera.pinhole import Camera
 from models.camera.rig import Rig

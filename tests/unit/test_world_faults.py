@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from edge.simulation.plan import BumpPlan, ExposurePlan, LightPlan, ShutterPlan, SwapPlan
-from edge.simulation.stage import rig_of
-from edge.simulation.world_faults import (
+from edge.simulation.lesson.plan import BumpPlan, ExposurePlan, LightPlan, ShutterPlan, SwapPlan
+from edge.simulation.lesson.stage import rig_of
+from edge.simulation.lesson.world_faults import (
     camera_at,
     delivery_faults,
     exposure_gain,

@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 from msgspec import UNSET
 
-from edge.simulation.plan import PLAN_VERSION, PerformancePlan, Plan, PupilPlan
+from edge.simulation.lesson.plan import PLAN_VERSION, PerformancePlan, Plan, PupilPlan
 from edge.simulation.split import Split, generator
 from models.motions.actions.library import ACTIONS
 from models.motions.performance import AMPLITUDE

@@ -6,7 +6,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Final
 
-from edge.simulation.plan import Plan
+from edge.simulation.lesson.plan import Plan
 from tests.bench.networks.looks import Looked, Name, Turn, look
 from tests.bench.reconstruct.rendered import rendered_lesson
 

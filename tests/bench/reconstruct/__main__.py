@@ -33,8 +33,8 @@ from typing import Final, Literal
 
 import numpy as np
 
-from edge.simulation.plan import Plan
-from edge.simulation.presets import SIX_ACTIONS, acceptance
+from edge.simulation.lesson.plan import Plan
+from edge.simulation.lesson.presets import SIX_ACTIONS, acceptance
 from models.errors import UserError
 from services.fusion.landmark_bias import THUNDER
 from tests.bench.datasets import h36m, panoptic
@@ -68,7 +68,7 @@ class Part:
     Attributes:
         way: the way.
         seeds: of the lessons.
-        rig, phases: of the lessons, as `edge.simulation.presets.acceptance`.
+        rig, phases: of the lessons, as `edge.simulation.lesson.presets.acceptance`.
     """
 
     way: Way

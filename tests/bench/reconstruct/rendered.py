@@ -11,13 +11,13 @@ import numpy as np
 from edge.cameras.jpeg import JpegFrame
 from edge.cameras.video import Video, load_video
 from edge.footage.index import Index
-from edge.simulation import truth_file
-from edge.simulation.attempts import read_attempts
-from edge.simulation.files import ATTEMPTS_NAME, RIG_NAME, TRUTH_NAME, film_path
-from edge.simulation.plan import Plan
-from edge.simulation.render_lesson import folder_of, render_lesson
-from edge.simulation.stage import member_of
-from edge.simulation.truth import Truth
+from edge.simulation.lesson.attempts import read_attempts
+from edge.simulation.lesson.files import ATTEMPTS_NAME, RIG_NAME, TRUTH_NAME, film_path
+from edge.simulation.lesson.plan import Plan
+from edge.simulation.lesson.stage import member_of
+from edge.simulation.rendering.render_lesson import folder_of, render_lesson
+from edge.simulation.truth import truth_file
+from edge.simulation.truth.truth import Truth
 from models.arrays import Float
 from models.camera.rig import decode_rig
 from models.errors import UserError

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from edge.simulation.plan import Plan
+from edge.simulation.lesson.plan import Plan
 from tests.bench.reconstruct.lesson import UPRIGHT
 from tests.bench.reconstruct.measure import Measured, Way, measure
 from tests.bench.reconstruct.rendered import rendered_lesson

@@ -1,0 +1,1 @@
+"""Lessons and strips made on this machine."""

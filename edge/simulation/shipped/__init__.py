@@ -1,0 +1,1 @@
+"""The lesson that comes with KineBox."""
