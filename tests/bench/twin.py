@@ -19,13 +19,13 @@ from tests.bench.reconstruct.lesson import Lesson
 from tests.bench.reconstruct.observed import DELAY_NS, LIVE_HZ, Looking, observed
 from tests.bench.reconstruct.rendered import render_all, rendered_lesson
 from tests.bench.report import Report
+from tests.bench.seeds import COUNT, seeds_of
 from tests.twin.agreement import BAR_PCT, Agreement, Case, agree
 from tests.twin.fit import Choice, fit, to_file
 from tests.twin.rendered import streams_of
 from tests.twin.truth import Stream
 from tests.twin.twin import FILE, Twin
 
-SEEDS: Final = tuple(range(5))
 _DELAY_S: Final = DELAY_NS * 1e-9
 _BARS: Final = {f"twin.{name}_gap_pct": ("within", BAR_PCT) for name in ("mpjpe", "jitter")}
 
@@ -34,12 +34,12 @@ def main() -> int:
     """Fit, judge, print, write; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True)
-    parser.add_argument("--seeds", type=int, default=len(SEEDS), help="lessons of each kind")
+    parser.add_argument("--seeds", type=int, default=COUNT, help="lessons of each kind")
     parser.add_argument("--keep", action="store_true", help="judge the twin that is there; fit nothing")
     parser.add_argument("--leave-out", action="store_true", help="fit to the lessons that are judged, leaving each out in its turn")
     options = parser.parse_args()
     try:
-        report = Report("twin", tuple(range(options.seeds)))
+        report = Report("twin", seeds_of("test", options.seeds))
         agreement = left_out(options) if options.leave_out else judged(options)
     except UserError as error:
         sys.stderr.write(f"twin: {error}\n")
@@ -76,7 +76,7 @@ def left_out(options: argparse.Namespace) -> Agreement:
 
 def cases(split: Split, seeds: int, data: Path) -> list[Case]:
     """Rendered, and looked at at the live rate, both from the cache if they are there."""
-    plans = [acceptance(seed, split) for seed in range(seeds)]
+    plans = [acceptance(seed, split) for seed in seeds_of(split, seeds)]
     render_all(plans, data)
     return [_case(rendered_lesson(plan, data), data) for plan in plans]
 

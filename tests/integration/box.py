@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import threading
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 
@@ -131,7 +132,7 @@ class Box:
     def wait_started(self, *names: str) -> None:
         """Until these processes (all by default) have been started at least once."""
         for name in names or NAMES:
-            until(lambda name=name: bool(self.pids(name)), f"{name} to be started; stderr:\n{self.errors.read_text()}")  # type: ignore[misc]
+            until(partial(self._was_started, name), partial(self._missed, f"a start of {name}"))
 
     def wait_page(self) -> None:
         """Until the person is told where the page is."""
@@ -139,7 +140,7 @@ class Box:
 
     def wait_restarted(self, name: str, starts: int = 2) -> None:
         """Until a process has been started so many times."""
-        until(lambda: len(self.pids(name)) >= starts, f"start {starts} of {name}; stderr:\n{self.errors.read_text()}")
+        until(lambda: len(self.pids(name)) >= starts, partial(self._missed, f"start {starts} of {name}"))
 
     def wait_gone(self) -> None:
         """Until no process of the box is left."""
@@ -153,6 +154,12 @@ class Box:
         """Tell the box to end as a service manager or a person does; its exit code."""
         self.process.send_signal(number)
         return self.process.wait(60.0)
+
+    def _was_started(self, name: str) -> bool:
+        return bool(self.pids(name))
+
+    def _missed(self, what: str) -> str:
+        return f"{what}; stderr:\n{self.errors.read_text()}"
 
     def _starts(self, name: str) -> list[str]:
         file = self.data / "starts" / name

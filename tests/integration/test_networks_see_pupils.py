@@ -53,7 +53,7 @@ def shots(request: pytest.FixtureRequest) -> list[Shot]:
         avatar = Avatar("pupil", member.subject, member.look, motion)
         renderer = Renderer(Scene(gym.room, (avatar,), (), gym.lamps, gym.ambient))
         attempt = motion.attempts[0]
-        for camera in make_rig("corners", split, seed).cameras[:2]:
+        for camera in make_rig("corners", split, seed).cameras[seed % 4 : seed % 4 + 1]:
             view = renderer.view(camera, Shutter())
             witness = Witness(renderer.scene, view.lens, Shutter(), renderer.courses)
             for number, t_s in enumerate((0.0, attempt.exertion_s, attempt.end_s)):
@@ -76,7 +76,7 @@ def test_thunder_finds_the_points_of_pupils_who_stand_and_throw(shots: list[Shot
         depth = shot.camera.to_camera(shot.truth.coco_m[0, 0, : coco.COUNT].astype(np.float64))[:, 2]
         off = off_px * depth / shot.camera.matrix_px[0, 0] / shot.stature_m
         hits.extend(off[shot.truth.coco_visible[0, 0, : coco.COUNT]] < WITHIN)
-    assert len(hits) > 100
+    assert len(hits) > 70
     assert np.mean(hits) > 0.9
 
 

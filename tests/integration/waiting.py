@@ -9,11 +9,11 @@ from models.process import Bus, Subscription
 DEADLINE_S = 30.0
 
 
-def until(condition: Callable[[], bool], what: str, deadline_s: float = DEADLINE_S) -> None:
-    """Wait for a condition, or fail with `what` was waited for."""
+def until(condition: Callable[[], bool], what: str | Callable[[], str], deadline_s: float = DEADLINE_S) -> None:
+    """Wait for a condition, or fail with `what` was waited for; a function is asked once it has failed."""
     end_s = time.monotonic() + deadline_s
     while not condition():
-        assert time.monotonic() < end_s, f"waited in vain: {what}"
+        assert time.monotonic() < end_s, f"waited in vain: {what if isinstance(what, str) else what()}"
         time.sleep(0.01)
 
 

@@ -181,5 +181,5 @@ def test_a_lesson_of_attempts_and_what_is_between_them_is_one_motion() -> None:
         at = standpoint_of(whole.pose_at(begins[attempt.action]))
         assert (at.x_m, at.y_m) == pytest.approx((float(actions.index(attempt.action)), 0.0), abs=1e-4)
         assert at.heading_rad == pytest.approx(1.0, abs=1e-4)
-    joints = [subject.body.joints_m(whole.pose_at(at_s)) for at_s in np.arange(0, whole.duration_s, 1 / 120)]
-    assert np.linalg.norm(np.diff(joints, axis=0), axis=-1).max() * 120 < 30
+    joints = [subject.body.joints_m(whole.pose_at(at_s)) for at_s in np.arange(0, whole.duration_s, 1 / 60)]
+    assert np.linalg.norm(np.diff(joints, axis=0), axis=-1).max() * 60 < 30

@@ -27,9 +27,9 @@ from tests.bench.networks.work import look_at_all
 from tests.bench.reconstruct.lesson import Lesson
 from tests.bench.reconstruct.rendered import render_all, rendered_lesson
 from tests.bench.report import Report
+from tests.bench.seeds import COUNT, seeds_of
 from tests.bench.table import Cell, ResultTable, spread, table_of
 
-SEEDS: Final = 5
 BARS: Final = {"within5_pct.thunder.upright": (">=", 93.0)}
 
 
@@ -38,19 +38,18 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--corrections", action="store_true", help="write services/fusion/landmark_bias.py")
-    parser.add_argument("--seeds", type=int, default=SEEDS, help="pupils; the figures of record are of five")
+    parser.add_argument("--seeds", type=int, default=COUNT, help="pupils; the figures of record are of five")
     options = parser.parse_args()
-    seeds = tuple(range(options.seeds))
     try:
-        return corrections(options.data, seeds) if options.corrections else bench(options.data, seeds)
+        return (corrections if options.corrections else bench)(options.data, options.seeds)
     except UserError as error:
         sys.stderr.write(f"bench-networks: {error}\n")
         return 2
 
 
-def corrections(data: Path, seeds: Sequence[int]) -> int:
+def corrections(data: Path, pupils: int) -> int:
     """The landmark bias of Thunder on development pupils, for fusion to take off."""
-    plans = [plan_of(seed, "development") for seed in seeds]
+    plans = [plan_of(seed, "development") for seed in seeds_of("development", pupils)]
     render_all(plans, data)
     lessons = [rendered_lesson(plan, data) for plan in plans]
     looked = look_at_all(plans, data, ["thunder"], ["rotated"])
@@ -59,8 +58,9 @@ def corrections(data: Path, seeds: Sequence[int]) -> int:
     return 0
 
 
-def bench(data: Path, seeds: Sequence[int]) -> int:
+def bench(data: Path, pupils: int) -> int:
     """All networks on the test pupils."""
+    seeds = seeds_of("test", pupils)
     report = Report("bench-networks", seeds)
     plans = [plan_of(seed, "test") for seed in seeds]
     render_all(plans, data)

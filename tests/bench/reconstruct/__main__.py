@@ -48,9 +48,9 @@ from tests.bench.reconstruct.rendered import render_all
 from tests.bench.reconstruct.results import by_action_table, by_pupil_table, dataset_figures, figures_of, lost, rows_of
 from tests.bench.reconstruct.work import measure_plan
 from tests.bench.report import Report
+from tests.bench.seeds import COUNT, seeds_of
 from tests.bench.table import Cell, spread, table_of
 
-SEEDS: Final = 5
 LIVE: Final = Way("live_rate", LIVE_HZ)
 EVERY_FRAME: Final = Way("every_frame", RATE_HZ)
 CORRECTED: Final = Way("corrected", LIVE_HZ, config=replace(CONFIG, landmark_bias=np.array(THUNDER)))
@@ -102,7 +102,7 @@ def main() -> int:
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--full", action="store_true", help="five lessons for everything, and the other rigs")
     parser.add_argument("--fresh", action="store_true", help="run the networks again")
-    parser.add_argument("--seeds", type=int, default=SEEDS, help="lessons; the figures of record are of five")
+    parser.add_argument("--seeds", type=int, default=COUNT, help="lessons; the figures of record are of five")
     parser.add_argument("--no-peers", action="store_true", help="without Pose2Sim and aniposelib")
     parser.add_argument("--dataset", choices=("", *DATASETS, "shelf"), default="", help="a data set that you hold")
     parser.add_argument("--path", type=Path, help="its folder")
@@ -119,7 +119,7 @@ def main() -> int:
 
 def on_rendered(options: argparse.Namespace) -> int:
     """The rendered lessons."""
-    seeds = tuple(range(options.seeds))
+    seeds = seeds_of("test", options.seeds)
     report = Report("bench-reconstruct", seeds)
     wanted = parts(seeds, full=options.full)
     render_all([plan for part in wanted for plan in part.plans], options.data)
