@@ -19,6 +19,12 @@ _PICTURE_PX: Final = (128, 256)
 _ORANGE: Final = (0.80, 0.38, 0.14)
 _CORK_RADIUS_M: Final = 0.0135
 _SKIRT_RADIUS_M: Final = 0.033
+_YELLOW: Final = (0.93, 0.80, 0.10)
+"""Of a school's nylon shuttlecocks, which are seen against wall and sky."""
+_SHAFT_M: Final = 0.0065
+_STRING_M: Final = 0.002
+_STRING: Final = (0.60, 0.60, 0.58)
+"""Thicker, fewer and greyer than they are: what is thinner than a pixel would flicker between black and white dots, or vanish."""
 _HEAD_HALF_M: Final = (0.145, 0.115)
 """Half of the head's length and width (BWF, law 4: at most 29 by 23 cm outside)."""
 
@@ -110,16 +116,16 @@ def _racket() -> Surface:
     top = butt + length
     half_length, half_width = _HEAD_HALF_M
     middle = top - half_length
-    heap.bar((0, 0, butt + 0.17), (0, 0, middle - half_length), 0.004, (0.25, 0.26, 0.30))
+    heap.bar((0, 0, butt + 0.17), (0, 0, middle - half_length), _SHAFT_M, (0.13, 0.14, 0.18))
     angles = np.linspace(0, 2 * np.pi, 25)
     rim = np.column_stack((np.zeros(25), half_width * np.sin(angles), middle - half_length * np.cos(angles)))
     for start, end in pairwise(rim):
-        heap.bar(start, end, 0.006, (0.75, 0.12, 0.14), sides=6)
-    for share in np.linspace(-0.9, 0.9, 13):
+        heap.bar(start, end, 0.007, (0.75, 0.12, 0.14), sides=6)
+    for share in np.linspace(-0.75, 0.75, 5):
         y, z = half_width * share, half_length * float(np.sqrt(1 - share**2))
-        heap.bar((0, y, middle - z), (0, y, middle + z), 0.0008, (0.93, 0.93, 0.90), sides=3)
+        heap.bar((0, y, middle - z), (0, y, middle + z), _STRING_M, _STRING, sides=3)
         y, z = half_width * float(np.sqrt(1 - share**2)), half_length * share
-        heap.bar((0, -y, middle + z), (0, y, middle + z), 0.0008, (0.93, 0.93, 0.90), sides=3)
+        heap.bar((0, -y, middle + z), (0, y, middle + z), _STRING_M, _STRING, sides=3)
     return heap.surface("racket", gloss=0.3)
 
 
@@ -139,8 +145,8 @@ def _shuttlecock() -> Surface:
     )
     place, following = np.arange(16), (np.arange(16) + 1) % 16
     outside = np.concatenate((np.stack((place, following, following + 16), 1), np.stack((place, following + 16, place + 16), 1)))
-    heap.add(skirt, outside, (0.96, 0.96, 0.95))
-    heap.add(skirt, outside[:, ::-1], (0.85, 0.85, 0.84))
+    heap.add(skirt, outside, _YELLOW)
+    heap.add(skirt, outside[:, ::-1], tuple(0.85 * value for value in _YELLOW))
     return heap.surface("shuttlecock")
 
 

@@ -101,10 +101,12 @@ def _racket_arm(line: Timeline, times: tuple[float, ...], faults: tuple[float, f
     line.key(start + 0.5 * (back - start), right_arm=Arm((0.25, 0.5, -0.7), (0.8, 0.0, 0.8), 80 * bent, 10, -10, 5, 70))
     line.key(back, right_arm=ready)
     line.key(drive, right_arm=ready)
-    # The elbow leads: it goes up and to the front while the racket still falls behind the back.
+    # The elbow leads: it goes up and to the front while the racket falls, past the shoulder, behind the back.
     reach = np.array((0.36, 0.34, 1.0)) * (1 - 0.45 * low) + np.array((0.8, 0.8, 0.0)) * 0.45 * low
-    lead = np.array((-0.02, 0.95, 0.38 - 0.3 * low))
-    line.key(hit - 0.064 * quick, right_arm=Arm(_direction(lead), (0.0, -0.62, 0.78), 124 * bent, -30, -34, 22, 75))
+    drawn, lead = np.array((-0.22, 0.9, 0.25)), np.array((0.03, 0.9, 0.48 - 0.3 * low))
+    line.key(drive + 0.35 * (hit - drive), right_arm=Arm(_direction(drawn), (-0.22, -0.1, 0.95), 112 * bent, -4, -48, 12, 75))
+    line.key(hit - 0.12 * quick, right_arm=Arm(_direction(lead), (-0.28, -0.42, 0.8), 122 * bent, 0, -55, 12, 75))
+    line.key(hit - 0.064 * quick, right_arm=Arm(_direction(lead), (-0.2, -0.6, 0.75), 112 * bent, -8, -48, 8, 75))
     line.key(hit, right_arm=Arm(_direction(reach), (-0.2, -0.9, 0.35), 30 + 50 * low, 5, -4, -18, 75))
     line.key(hit + 0.022 * quick, right_arm=Arm((0.72, 0.2, 0.95 - 0.6 * low), (-0.15, -0.9, 0.4), 9 + 50 * low, 22, 12, -24, 75))
     line.key(hit + 0.08 * quick, right_arm=Arm((0.95, 0.0, 0.3 - 0.2 * low), (-0.05, -0.9, 0.7), 16 + 35 * low, 40, 22, -10, 75))
