@@ -78,10 +78,10 @@ def perform(performance: Performance, subject: Subject) -> Motion:
     line.key(
         on,
         Body(
-            at=(far - 0.52 + 0.10 * stiff, 0.0),
-            height=0.68 + 0.06 * stiff,
-            tip=22 - 7 * stiff,
-            lean=36 - 12 * stiff,
+            at=(far - 0.80 + 0.10 * stiff, 0.0),
+            height=0.61 + 0.07 * stiff,
+            tip=4,
+            lean=46 - 14 * stiff,
             gaze=(0, 15),
         ),
     )
@@ -130,9 +130,9 @@ def _leap(line: Timeline, side: Side, times: _Times, far: float, heel_deg: float
         line.pitch(at_s, side, degrees)
     for at_s, words in (
         (off + 0.08 * air, Leg(thigh=(-0.35, 0.05, -1), bend=22, toes=35)),
-        (off + 0.50 * air, Leg(thigh=(0.8, 0.08, -0.75), bend=88, toes=0)),
-        (off + 0.80 * air, Leg(thigh=(1, 0.08, -0.42), bend=38, toes=-8)),
-        (on, Leg(thigh=(1, 0.08, -0.3), bend=26, toes=-5)),
+        (off + 0.45 * air, Leg(thigh=(1, 0.08, -0.25), bend=104, toes=0)),
+        (off + 0.72 * air, Leg(thigh=(1, 0.08, 0.12), bend=62, toes=-8)),
+        (on, Leg(thigh=(1, 0.08, -0.2), bend=26, toes=-5)),
     ):
         if side == "left":
             line.key(at_s, left_leg=words)
