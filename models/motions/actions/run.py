@@ -22,9 +22,9 @@ from models.motions.timeline import Side, Timeline, snapped
 from models.motions.vocabulary import Arm, Body, Leg
 
 FAULTS: Final = (
-    Fault("no_arm_drive", "the arms swing a quarter as far, and the elbows are bent half as much"),
-    Fault("no_knee_lift", "the thighs come forward half as far"),
-    Fault("overstride", "the feet land on the heel, a tenth of a leg further in front of the body"),
+    Fault("no_arm_drive", "the arms swing a quarter as far, with elbows less bent by a quarter"),
+    Fault("no_knee_lift", "the thighs come forward a third as far, in low steps"),
+    Fault("overstride", "the feet land on the heel, a sixth of a leg further in front of the body"),
     Fault("leans_back", "the trunk is held 16 degrees further back"),
 )
 _STILL_S: Final = 0.3
@@ -56,6 +56,11 @@ _FULL: Final = 3
 """The first step at full speed."""
 _FASTEST: Final = 4
 """The step whose flight is the run's peak."""
+_KNEE_LIFT: Final = 1.4
+"""How much further the thighs come forward than the recorded runner's, who jogs; so do his arms hang, whose elbows a sprinter bends
+by this much, and lets swing by this share of his:"""
+_ELBOW_DEG, _RECORDED_ELBOW_DEG, _ELBOW_SHARE = 92.0, 78.0, 0.4
+_FIST_DEG: Final = 62.0
 _ON, _OFF = 0.48, 0.76
 """Phases of the cycle at which the left foot lands and leaves."""
 _RECORDED_TIP_DEG: Final = 26.0
@@ -84,14 +89,14 @@ class _Footfalls:
 
 def perform(performance: Performance, subject: Subject) -> Motion:
     """See `models.motions.perform.perform`."""
-    natural, severity = Natural(performance), performance.severity
+    natural = Natural(performance)
     line = Timeline(subject, performance.handed, natural)
     falls = _footfalls(performance, natural, line.leg_m)
     count = len(falls.on_s)
     end = snapped(falls.on_s[-1] + natural.seconds(0.75))
 
     line.stand(_STILL_S)
-    _put_feet(line, falls, severity("overstride"))
+    _put_feet(line, falls, _overstride(performance))
     for number in range(count):
         for at_s, x, height in (
             (falls.on_s[number], falls.behind[number], _HEIGHTS[0]),
@@ -111,6 +116,11 @@ def perform(performance: Performance, subject: Subject) -> Motion:
     return line.motion(end + _STILL_S, (attempt,))
 
 
+def _overstride(performance: Performance) -> float:
+    """Severity, up to where a leg can reach no further."""
+    return min(performance.severity("overstride"), 1.1)
+
+
 def _footfalls(performance: Performance, natural: Natural, leg_m: float) -> _Footfalls:
     times, stance, ahead, _ = _STEPS.T
     times = times * np.sqrt(leg_m / _LEG_M) * natural.seconds(1.0)
@@ -125,7 +135,7 @@ def _footfalls(performance: Performance, natural: Natural, leg_m: float) -> _Foo
     slower = splines.minimum_jerk((at_s - slows) / (last - slows))
     run = np.cumsum(speed * (faster - slower)) / RATE_HZ
     behind, before = np.interp(on, at_s, run), np.interp(off, at_s, run)
-    ahead = ahead + 0.13 * performance.severity("overstride") * (ahead < _BRAKES)
+    ahead = ahead + 0.18 * _overstride(performance) * (ahead < _BRAKES)
     places = behind + ahead * (before - behind)
     places[-2:] = run[-1]
     sides: tuple[Side, ...] = tuple("right" if number % 2 == 0 else "left" for number in range(len(on)))
@@ -142,7 +152,7 @@ def _put_feet(line: Timeline, falls: _Footfalls, over: float) -> None:
         side = falls.sides[number]
         lift, land = lifts[side], float(falls.on_s[number])
         yaw = TOES_OUT_DEG if number >= count - 2 else 4.0
-        heel = -8.0 * over if 1 <= number < count - 2 else 0.0
+        heel = -12.0 * over if 1 <= number < count - 2 else 0.0
         if number in {0, count - 1}:
             line.step(
                 side,
@@ -226,11 +236,18 @@ def _arm(phase: float, share: float, bent: float) -> Arm:
     mean = np.mean([_turn("shoulder", at) @ away for at in np.arange(8) / 8], axis=0)
     elbow = _turn("elbow", phase)
     fore = _turn("shoulder", phase) @ elbow @ away
-    bend = np.degrees(np.arccos(np.clip(upper @ fore, -1.0, 1.0)))
+    recorded = np.degrees(np.arccos(np.clip(upper @ fore, -1.0, 1.0)))
+    bend = _ELBOW_DEG + _ELBOW_SHARE * (recorded - _RECORDED_ELBOW_DEG)
     aside = fore - (upper @ fore) * upper
     x, y, z = mean + share * (upper - mean)
     return Arm(
-        (float(x), float(y), float(z)), (float(aside[0]), float(aside[1]), float(aside[2])), float(bend * (0.5 + 0.5 * bent)), 10.0
+        (float(x), float(y), float(z)),
+        (float(aside[0]), float(aside[1]), float(aside[2])),
+        float(bend * (0.66 + 0.34 * bent)),
+        turn=10.0,
+        wrist=0.0,
+        cock=0.0,
+        curl=20.0 + (_FIST_DEG - 20.0) * bent,
     )
 
 
@@ -238,11 +255,12 @@ def _leg(phase: float, tip_deg: float, performance: Performance) -> Leg:
     """The recorded left leg under a pelvis that is tipped less than the recorded one."""
     more = np.radians(_RECORDED_TIP_DEG - tip_deg)
     thigh = rotations.about(1, np.asarray(more)) @ _turn("hip", phase) @ np.array((0.0, 0.0, -1.0))
-    lifts = 1 - 0.5 * performance.severity("no_knee_lift")
-    front = thigh[0] * (max(lifts, 0.0) if thigh[0] > 0 else 1.0)
+    lifts = max(1 - 0.68 * performance.severity("no_knee_lift"), 0.0)
+    angle = float(np.arctan2(thigh[0], -thigh[2]))
+    angle *= _KNEE_LIFT * lifts if angle > 0 else 1.0
     return Leg(
-        thigh=(float(front), 0.04, float(thigh[2])),
-        bend=float(np.degrees(_wave("left_knee", 1, phase))) * (0.4 + 0.6 * max(lifts, 0.0)) + 5,
+        thigh=(float(np.sin(angle)), 0.04, -float(np.cos(angle))),
+        bend=float(np.degrees(_wave("left_knee", 1, phase))) * (0.4 + 0.6 * lifts) + 5,
         toes=float(np.clip(np.degrees(_wave("left_ankle", 1, phase)), -12, 28)),
     )
 
