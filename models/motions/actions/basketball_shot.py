@@ -109,18 +109,18 @@ def _arms(line: Timeline, times: tuple[float, ...], faults: tuple[float, float, 
     line.key(snapped(raised + 0.08), right_arm=Arm(wrist=-62))
     line.key(release, right_arm=Arm((1.0, 0.8 * aside, 1.35 - 0.95 * low), (-0.3, -0.85, 0.5), 22, 26, -12, 0, 14))
     snap = release + 0.09
-    wrist = 62 - 70 * min(pulled, 1.3)
-    line.key(snap, right_arm=Arm((1.0, 0.6 * aside, 1.5 - 1.0 * low), (-0.35, -0.8, 0.6), 12 + 30 * pulled, 28, wrist, 0, 22))
+    wrist = 46 - 54 * min(pulled, 1.3)
+    line.key(snap, right_arm=Arm((1.0, 0.6 * aside, 1.5 - 1.0 * low), (-0.35, -0.8, 0.6), 12 + 30 * pulled, 28, wrist, 0, 16))
     down = min(pulled, 1.3)
     rest = snap + (settled - snap + 0.18) * (1.0 - 0.35 * down)
     held_up = (1.0 - 0.3 * down, 0.6 * aside, 1.4 - low - (1.75 - low) * down)
     bend = 16 + 70 * down
-    line.key(rest, right_arm=Arm(held_up, (-0.35 + 0.6 * down, -0.8 + 0.3 * down, 0.6), bend, 28, wrist * (1 - 0.7 * down), 0, 22))
+    line.key(rest, right_arm=Arm(held_up, (-0.35 + 0.6 * down, -0.8 + 0.3 * down, 0.6), bend, 28, wrist * (1 - 0.7 * down), 0, 16))
     line.key(rest + 0.5 * (end - rest), right_arm=Arm((0.55, 0.2, -0.7), (0.6, -0.2, 1.0), 60, 40, 10, 0, 20))
     # The guide hand: on the ball's side, leaves it just before the release, and stays up.
     line.key(raised, left_arm=Arm((0.85, 0.05, 0.05), (0.1, -0.25, 1.0), 95, -10, -10, 0, 8))
     line.key(release, left_arm=Arm((0.85, 0.3, 0.7 - 0.85 * low), (0.0, -0.45, 1.0), 55, -10, -8, 0, 8))
-    line.key(settled, left_arm=Arm((0.75, 0.15, 0.2 - 0.4 * low), (0.1, -0.1, 1.0), 75, 0, 0, 0, 12))
+    line.key(settled, left_arm=Arm((0.85, 0.2, 0.6 - 0.7 * low), (0.0, -0.35, 1.0), 58, -5, -4, 0, 10))
     line.guide(
         "left",
         (0.1, 0.75, -1.0),

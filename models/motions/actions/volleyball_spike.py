@@ -18,7 +18,10 @@ from models.motions.vocabulary import Arm, Body, Leg
 from models.skeleton import smpl
 
 FAULTS: Final = (
-    Fault("arm_not_back", "the hitting arm is not drawn back: its elbow stays in front of the shoulder"),
+    Fault(
+        "arm_not_back",
+        "the hitting arm is not drawn back: its elbow stays in front of the shoulder, which does not turn back either",
+    ),
     Fault("hit_behind", "the ball is hit behind the head instead of a forearm's length in front of it"),
     Fault("late_hit", "the ball is hit 0.1 s after the top of the jump, on the way down"),
     Fault("one_foot_landing", "the landing is on one foot; the other one follows 0.16 s later"),
@@ -61,7 +64,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
 
     _approach(line, (start, first, second, third, bottom, off, on, settled, end), single)
     _flight(line, (off, top, on), single)
-    _trunk(line, (first, second, bottom, off, hit, on, settled), behind)
+    _trunk(line, (first, second, bottom, off, hit, on, settled), forward, behind)
     _arms(line, (first, second, bottom, off, hit, on, settled), (forward, behind))
     line.stand(end, (_LANDING, 0.0))
     poses = line.poses(end + 0.15)
@@ -97,14 +100,16 @@ def _flight(line: Timeline, times: tuple[float, ...], single: float) -> None:
     line.key(on, right_leg=Leg((0.4 + 0.3 * single, 0.06, -1.0), 24 + 40 * single, 5, 30 - 12 * single))
 
 
-def _trunk(line: Timeline, times: tuple[float, ...], behind: float) -> None:
+def _trunk(line: Timeline, times: tuple[float, ...], forward: float, behind: float) -> None:
     first, second, bottom, off, hit, on, settled = times
     quick = (on - off) / _AIRBORNE_S
+    # Who leaves the elbow in front does not turn the shoulder back either.
+    drawn = max(1.0 - 0.8 * forward, 0.0)
     line.key(first, Body(tip=8, lean=4, facing=0, twist=0))
     line.key(second, Body(tip=12, lean=8, facing=-12, twist=-4))
     line.key(bottom, Body(tip=20, lean=14, facing=-18, twist=-4))
-    line.key(off, Body(tip=0, lean=-6, facing=-18, twist=-10, bow=2))
-    line.key(hit - 0.09 * quick, Body(tip=-4, lean=-13, facing=-16, twist=-24, bow=4, gaze=(0, -34)))
+    line.key(off, Body(tip=0, lean=-6 * drawn, facing=-18 * drawn, twist=-10 * drawn, bow=2))
+    line.key(hit - 0.09 * quick, Body(tip=-4, lean=-13 * drawn, facing=-16 * drawn, twist=-24 * drawn, bow=4, gaze=(0, -34)))
     line.key(hit, Body(tip=2, lean=-3 - 12 * behind, facing=-2, twist=8, bow=-8, gaze=(0, -34 - 8 * behind)))
     line.key(hit + 0.12 * quick, Body(tip=12, lean=16 - 14 * behind, facing=8, twist=18, bow=-2, gaze=(0, -4)))
     line.key(on, Body(tip=8, lean=14 - 6 * behind, facing=8, twist=12, bow=0))
@@ -119,14 +124,15 @@ def _arms(line: Timeline, times: tuple[float, ...], faults: tuple[float, float])
     line.arms(second - 0.06, Arm((-0.75, 0.28, -0.65), (1.0, -0.2, -0.2), 14, 20, 0, 0, 12))
     line.arms(second, Arm((-0.7, 0.28, -0.7), (1.0, -0.2, -0.2), 14, 20, 0, 0, 12))
     line.arms(bottom, Arm((0.05, 0.2, -1.0), (1.0, -0.3, 0.2), 38, 15, 0, 0, 12))
-    line.key(off + 0.06 * quick, left_arm=Arm((0.95, 0.25, 0.35), (0.1, -0.3, 1.0), 55, 10, 0, 0, 8))
+    line.key(off + 0.06 * quick, left_arm=Arm((0.75, 0.5, 0.55), (0.1, -0.1, 1.0), 26, 10, 0, 0, 8))
     line.key(
-        off + 0.06 * quick, right_arm=Arm((0.05 + 0.6 * forward, 0.8 - 0.25 * forward, 0.1), (0.2, -0.2, 1.0), 88, 5, -10, 0, 8)
+        off + 0.06 * quick,
+        right_arm=Arm((-0.1 + 0.9 * forward, 0.8 - 0.35 * forward, 0.1 - 0.2 * forward), (0.2, -0.2, 1.0), 88, 5, -10, 0, 8),
     )
-    line.key(hit - 0.11 * quick, left_arm=Arm((0.85, 0.2, 0.75), (0.1, -0.3, 1.0), 22, 15, 0, 0, 6))
+    line.key(hit - 0.11 * quick, left_arm=Arm((0.75, 0.35, 0.85), (0.1, -0.2, 1.0), 14, 15, 0, 0, 6))
     line.key(hit + 0.02 * quick, left_arm=Arm((0.6, 0.3, -0.5), (0.8, -0.4, 0.6), 80, 10, 0, 0, 20))
     line.key(hit + 0.2 * quick, left_arm=Arm((0.1, 0.35, -0.95), (1.0, -0.4, 0.2), 60, 10, 0, 0, 20))
-    cocked = (-0.4 + 1.3 * forward, 0.85 - 0.4 * forward, 0.3 - 0.2 * forward)
+    cocked = (-0.42 + 1.4 * forward, 0.85 - 0.5 * forward, 0.3 - 0.2 * forward)
     line.key(hit - 0.115 * quick, right_arm=Arm(cocked, (0.0, -0.15, 1.0), 98, -5, -18, 0, 8))
     line.key(
         hit - 0.062 * quick,
