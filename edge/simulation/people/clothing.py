@@ -83,7 +83,9 @@ class Footwear:
 def sew_shirt(anatomy: Anatomy, shirt: Shirt, detail: int, random: np.random.Generator) -> Garment:
     """The shirt on the body, untucked."""
     scale = anatomy.scale
-    collar, cuff = _collar_m(anatomy, anatomy.skin.vertices_m, 1.0), _cuff_m(anatomy, anatomy.skin.vertices_m, shirt.sleeve)
+    # Under a hood the cloth goes up to the neck: no skin is between them.
+    collar = _collar_m(anatomy, anatomy.skin.vertices_m, 0.45 if shirt.hood else 1.0)
+    cuff = _cuff_m(anatomy, anatomy.skin.vertices_m, shirt.sleeve)
     hem_z = _hem_z(anatomy) + (1 - shirt.length) * 0.07 * scale
     hem = anatomy.skin.vertices_m[:, 2] - hem_z
     field = np.minimum(np.minimum(collar, cuff), hem)
