@@ -40,8 +40,8 @@ _KEYS: Final = np.array(
     (
         (0.00,   0,  0,  0,  0,   0,  10, 10, 9.65, 9.65, 0.00, 1.00),
         (0.48,  -3,  8, -3, 12,   2,  20, 10, 150, 150, -0.07, 0.99),
-        (0.82,   3, 20, -6, 36,   4,  16, 12, 156, 154, 0.22, 0.93),
-        (1.04,  28, 36, 10, 40,  24,  34, 10, 152, 160, 0.66, 0.91),
+        (0.82,   4, 22, -5, 38,   5,  26, 10, 156, 154, 0.30, 0.89),
+        (1.04,  28, 37, 10, 42,  24,  46, 8,  152, 160, 0.62, 0.87),
         (1.28,  82, 55, 44, 59,  54,  20,  5, 144, 165, 1.04, 0.96),
         (1.44, 128, 40, 40, 59,  59,   8,  4, 150, 168, 1.31, 1.03),
         (1.58, 160, 12, 17, 59,  59,   4,  4, 160, 166, 1.50, 1.11),
@@ -57,7 +57,7 @@ _FINGERS_DEG: Final = 135.0
 """Where the fingers point: from straight behind the body to the side of the hand."""
 _BACK: Final = 0.46
 """How far behind the trunk a leg swings, tangent."""
-_STEP: Final = 0.74
+_STEP: Final = 0.82
 """How far the first foot steps to the side, legs."""
 _TURNED_OUT_DEG: Final = 34.0
 """How much further than in standing the foot that carries alone points to the side."""
