@@ -10,11 +10,11 @@ from models.messages.observation import Crop
 from models.skeleton.trunk import lean_rad
 from services.fusion.person_estimates import PersonEstimates
 
-_MARGIN: Final = 1.3
+CROP_MARGIN: Final = 1.3
 """Side of the crop over the extent of the joints: crown and toes reach beyond them, and a prediction errs."""
 _MIN_JOINTS: Final = 5
 _MIN_SIDE_PX: Final = 32.0
-_SHORT_TRUNK: Final = 0.1
+SHORT_TRUNK: Final = 0.1
 """Trunk length over the joints' extent under which its direction says nothing."""
 _REACH: Final = 4.0
 """Sides of the picture within which a projected joint is believed."""
@@ -33,8 +33,8 @@ def predict_crop(pupil: PersonEstimates, camera: Camera, t_ns: int) -> CropPredi
     if known.sum() < _MIN_JOINTS:
         return None
     extent_px = float(np.ptp(pixels[known], axis=0).max())
-    lean = lean_rad(pixels, known, _SHORT_TRUNK * extent_px)
-    crop = Crop.around(pixels[known], lean or 0.0, _MARGIN, _MIN_SIDE_PX)
+    lean = lean_rad(pixels, known, SHORT_TRUNK * extent_px)
+    crop = Crop.around(pixels[known], lean or 0.0, CROP_MARGIN, _MIN_SIDE_PX)
     half = 0.5 * crop.side_px
     if not (-half < crop.centre_x_px < camera.size_px[0] + half and -half < crop.centre_y_px < camera.size_px[1] + half):
         return None

@@ -17,6 +17,7 @@ from rich.table import Table
 from services.support.processor import processor
 from tests.bench.table import Cell, ResultTable, Spread, shown, spread
 
+_ROOT = Path(__file__).parents[2]
 _COMPARISONS: dict[str, Callable[[float, float], bool]] = {
     ">=": lambda value, bar: value >= bar,
     "<=": lambda value, bar: value <= bar,
@@ -65,7 +66,7 @@ class Report:
         path.parent.mkdir(parents=True, exist_ok=True)
         document = {
             "target": self.target,
-            "commit": _commit(),
+            "commit": commit(),
             "machine": machine(),
             "seeds": list(self.seeds),
             "seconds": round(time.monotonic() - self.started_s, 1),
@@ -111,6 +112,7 @@ def machine() -> str:
     return f"{name}, {cores} cores, Python {platform.python_version()}"
 
 
-def _commit() -> str:
-    result = subprocess.run(["git", "describe", "--always", "--dirty", "--exclude=*"], capture_output=True, text=True, check=False)
-    return result.stdout.strip()
+def commit() -> str:
+    """Of the checkout, with `-dirty` if it was changed since; empty outside of one."""
+    command = ["git", "describe", "--always", "--dirty", "--exclude=*"]
+    return subprocess.run(command, cwd=_ROOT, capture_output=True, text=True, check=False).stdout.strip()

@@ -15,6 +15,7 @@ from typing import Final
 from edge.simulation.lesson.presets import acceptance
 from edge.simulation.split import Split
 from models.errors import UserError
+from tests.bench.kept import keep
 from tests.bench.reconstruct.lesson import Lesson
 from tests.bench.reconstruct.observed import DELAY_NS, LIVE_HZ, Looking, observed
 from tests.bench.reconstruct.rendered import render_all, rendered_lesson
@@ -57,8 +58,7 @@ def judged(options: argparse.Namespace) -> Agreement:
         twin = Twin.load()
     else:
         twin = fit(_streams(cases("development", options.seeds, options.data)), shown=_told)
-        FILE.parent.mkdir(exist_ok=True)
-        FILE.write_bytes(to_file(twin))
+        keep(FILE, to_file(twin))
         print(f"fitted to {len(twin.library)} pictures, written to {FILE}")
     return agree(cases("test", options.seeds, options.data), lambda _: twin, shown=_done)
 

@@ -11,13 +11,11 @@ import numpy as np
 from models.arrays import Float
 from models.camera.pinhole import Camera
 from models.skeleton import coco
+from services.fusion.prediction import CROP_MARGIN, SHORT_TRUNK
 from tests.twin.occlusion import hidden
 from tests.twin.truth import Truth
 
 MIRROR = np.array(coco.MIRROR)
-_CROP_MARGIN = 1.3
-_SHORT_TRUNK = 0.1
-"""Both as fusion predicts crops (`services.fusion.prediction`)."""
 _LEFT_SHOULDER, _RIGHT_SHOULDER, _LEFT_HIP, _RIGHT_HIP = coco.TRUNK
 
 
@@ -91,7 +89,7 @@ def look(truth: Truth) -> tuple[Frame, Context]:
     turn = np.stack((np.stack((np.cos(lean), -np.sin(lean)), axis=-1), np.stack((np.sin(lean), np.cos(lean)), axis=-1)), axis=-2)
     hips_px = points_px[:, [_LEFT_HIP, _RIGHT_HIP]].mean(axis=1, keepdims=True)
     pose = (points_px - hips_px) @ turn / stature_px[:, None, None]
-    side = _CROP_MARGIN * np.ptp(pose, axis=1).max(axis=1)
+    side = CROP_MARGIN * np.ptp(pose, axis=1).max(axis=1)
     covered = hidden(camera.centre_m, truth.points_m, truth.statures_m)
     covered[~inside(points_px, camera)] = 1.0
     moved_px = camera.project(points_m + 1e-3 * truth.velocity_m_s) - points_px
@@ -109,7 +107,7 @@ def inside(points_px: Float, camera: Camera) -> np.ndarray[tuple[int, ...], np.d
 def _lean(points_px: Float) -> Float:
     trunk = points_px[:, [_LEFT_SHOULDER, _RIGHT_SHOULDER]].mean(axis=1) - points_px[:, [_LEFT_HIP, _RIGHT_HIP]].mean(axis=1)
     extent = np.ptp(points_px, axis=1).max(axis=1)
-    told = np.hypot(trunk[:, 0], trunk[:, 1]) >= _SHORT_TRUNK * extent
+    told = np.hypot(trunk[:, 0], trunk[:, 1]) >= SHORT_TRUNK * extent
     return np.where(told, np.arctan2(trunk[:, 0], -trunk[:, 1]), 0.0)
 
 

@@ -18,6 +18,8 @@ from models.camera.pinhole import Camera
 from models.messages.observation import Crop
 from models.skeleton import coco
 from models.skeleton.trunk import lean_rad
+from services.fusion.prediction import CROP_MARGIN, SHORT_TRUNK
+from tests.bench.kept import keep_arrays
 from tests.bench.reconstruct.lesson import Lesson
 
 Name = Literal["thunder", "lightning", "blazepose"]
@@ -25,13 +27,14 @@ NETWORKS: Final[tuple[Name, ...]] = ("thunder", "lightning", "blazepose")
 FILES: Final = {"thunder": "movenet-thunder", "lightning": "movenet-lightning", "blazepose": "blazepose-full"}
 Turn = Literal["upright", "rotated"]
 TURNS: Final[tuple[Turn, ...]] = ("upright", "rotated")
-_MARGIN: Final = 1.3
-_SHORT_TRUNK: Final = 0.1
-"""Both as `services.fusion.prediction`, which tells the box where to look."""
 _BLAZEPOSE_REACH: Final = 2.5
 """Side of the crop that BlazePose was trained on over the distance from the middle of the hips to the farthest point."""
 _BLAZEPOSE_TO_COCO: Final = [0, 2, 5, 7, 8, 11, 12, 13, 14, 15, 16, 23, 24, 25, 26, 27, 28]
-_CODE: Final = (Path(__file__), *(Path(__file__).parents[3] / f"edge/perception/{name}.py" for name in ("crop", "pose")))
+_ROOT: Final = Path(__file__).parents[3]
+_CODE: Final = (Path(__file__), *(_ROOT / name for name in (
+    "edge/cameras/jpeg.py", "edge/perception/crop.py", "edge/perception/networks.py", "edge/perception/pose.py",
+    "models/messages/observation.py", "models/skeleton/trunk.py",
+)))  # fmt: skip
 
 Estimate = Callable[[UInt8], tuple[Float, Float]]
 """(17, 2) points in crop coordinates 0 to 1 and (17,) scores from a crop."""
@@ -54,9 +57,9 @@ def look(lesson: Lesson, network: Name, turn: Turn, data: Path) -> dict[str, Loo
     """A network on all pictures, by camera; kept in `DATA/keypoints` by everything that it depends on.
 
     Raises:
-        UserError: the network is not installed.
+        UserError: the network is not installed, or the file cannot be written.
     """
-    digest = hashlib.sha256(f"{lesson.identity} {network} {turn}".encode())
+    digest = hashlib.sha256(f"{lesson.identity} {network} {turn} {CROP_MARGIN} {SHORT_TRUNK}".encode())
     for part in (read_network_file(FILES[network], data), *(path.read_bytes() for path in _CODE)):
         digest.update(hashlib.sha256(part).digest())
     path = data / "keypoints" / f"looks-{digest.hexdigest()[:40]}.npz"
@@ -66,11 +69,8 @@ def look(lesson: Lesson, network: Name, turn: Turn, data: Path) -> dict[str, Loo
     cv2.setNumThreads(1)
     size_px, estimate = _network(network, data)
     found = {name: _look_at(lesson, name, network, turn, size_px, estimate) for name in lesson.rig.names}
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part_path = path.with_suffix(".part.npz")
-    arrays = {f"{name}.points": each.points_px for name, each in found.items()}
-    np.savez(part_path, **arrays, **{f"{name}.scores": each.scores for name, each in found.items()})  # type: ignore[arg-type]
-    part_path.replace(path)
+    points = {f"{name}.points": each.points_px for name, each in found.items()}
+    keep_arrays(path, points | {f"{name}.scores": each.scores for name, each in found.items()})
     return found
 
 
@@ -92,8 +92,8 @@ def crop_of(points_px: Float, size_px: tuple[int, int], network: Name, turn: Tur
     if not np.isfinite(points_px).all():
         return None
     extent_px = float(np.ptp(points_px, axis=0).max())
-    lean = lean_rad(points_px, np.ones(coco.COUNT, np.bool_), _SHORT_TRUNK * extent_px) if turn == "rotated" else 0.0
-    crop = Crop.around(points_px, lean or 0.0, _MARGIN)
+    lean = lean_rad(points_px, np.ones(coco.COUNT, np.bool_), SHORT_TRUNK * extent_px) if turn == "rotated" else 0.0
+    crop = Crop.around(points_px, lean or 0.0, CROP_MARGIN)
     if network == "blazepose":
         hips = points_px[list(coco.TRUNK[2:])].mean(axis=0)
         reach = float(np.linalg.norm(points_px - hips, axis=1).max())

@@ -14,6 +14,7 @@ import numpy as np
 
 from models.arrays import Float
 from tests.bench.footage import for_peers
+from tests.bench.kept import keep_arrays
 from tests.bench.peers.answer import Answer
 from tests.bench.peers.ask import PEERS, ask_peers, best_setting, margins_pct
 from tests.bench.peers.pose2sim_project import JOINTS
@@ -67,10 +68,7 @@ def answers(measured: Measured, data: Path, *, quick: bool) -> dict[str, Float]:
     for (of_peer,) in ask_peers([for_peers(clip.rig, (clip.points_px, clip.scores), 1.0)], quick=quick):
         found += of_peer
     joints = {answer.method: answer.joints_m for answer in found}
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(".part.npz")
-    np.savez_compressed(part, **joints)  # type: ignore[arg-type]  # the stub takes `allow_pickle` for any of them
-    part.replace(path)
+    keep_arrays(path, joints)
     return joints
 
 

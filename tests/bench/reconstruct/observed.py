@@ -8,7 +8,6 @@ minutes. `--fresh` makes all anew.
 
 import hashlib
 import json
-import subprocess
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -32,7 +31,9 @@ from services.fusion.config import PRESETS, FusionConfig
 from services.fusion.pipeline import Tick
 from services.fusion.process import CONTROL_EVERY_TICKS
 from tests.bench.closed_loop import Event, Pace, watch
+from tests.bench.kept import keep
 from tests.bench.reconstruct.lesson import START_NS, Lesson
+from tests.bench.report import commit
 
 FORMAT: Final = 1
 RATE_HZ: Final = 30.0
@@ -71,7 +72,7 @@ class Observed:
         looking: how.
         events: observations and ticks in fusion's order.
         commit: of the code whose fusion predicted the crops.
-        edge_cpu_s: CPU seconds of networks, crops and decoding, when they ran.
+        edge_cpu_s: CPU seconds of decoding, crops and networks when they ran, and of fusion, which told them where to look.
     """
 
     looking: Looking
@@ -91,7 +92,7 @@ def observed(lesson: Lesson, looking: Looking, data: Path, *, fresh: bool = Fals
     """The events of a lesson, from the cache or by looking.
 
     Raises:
-        UserError: the networks are not installed.
+        UserError: the networks are not installed, or the file cannot be written.
     """
     path = data / "keypoints" / f"{_key(lesson, looking, data)}.msgpack"
     if not fresh and (kept := _read(path)) is not None:
@@ -101,13 +102,10 @@ def observed(lesson: Lesson, looking: Looking, data: Path, *, fresh: bool = Fals
     detector = load_person_detector(data, "cpu", DETECTION_SCORE_MIN)
     began_s = time.process_time()
     events = look(lesson, looking, Networks(pose, lambda: detector))
-    commit, spent_s = _commit(), time.process_time() - began_s
+    described, spent_s = commit(), time.process_time() - began_s
     raw = [event.t_ns if isinstance(event, Tick) else codec.encode(event) for event in events]
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(".part")
-    part.write_bytes(msgspec.msgpack.encode(_File(FORMAT, commit, spent_s, raw)))
-    part.replace(path)
-    return Observed(looking, events, commit, spent_s)
+    keep(path, msgspec.msgpack.encode(_File(FORMAT, described, spent_s, raw)))
+    return Observed(looking, events, described, spent_s)
 
 
 def look(lesson: Lesson, looking: Looking, networks: Networks, config: FusionConfig = CONFIG) -> list[Event]:
@@ -136,7 +134,7 @@ def _key(lesson: Lesson, looking: Looking, data: Path) -> str:
     parts = [
         lesson.identity.encode(),
         encode_rig(lesson.rig.select(looking.cameras), ""),
-        json.dumps([FORMAT, looking.rate_hz, looking.network, DELAY_NS, lesson.length_s]).encode(),
+        json.dumps([FORMAT, looking.rate_hz, looking.network, DELAY_NS, lesson.length_s, DETECTION_SCORE_MIN]).encode(),
         read_network_file(f"movenet-{looking.network}", data),
         read_network_file("nanodet", data),
         *(path.read_bytes() for path in _edge_code()),
@@ -150,8 +148,3 @@ def _key(lesson: Lesson, looking: Looking, data: Path) -> str:
 def _edge_code() -> list[Path]:
     paths = [_ROOT / name for name in _EDGE_CODE]
     return sorted(file for path in paths for file in (path.rglob("*.py") if path.is_dir() else [path]))
-
-
-def _commit() -> str:
-    result = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=_ROOT, capture_output=True, text=True, check=False)
-    return result.stdout.strip()
