@@ -17,7 +17,7 @@ from tests.bench.reconstruct.against_peers import OURS, Standing, margin_figures
 from tests.bench.reconstruct.lesson import UPRIGHT, Lesson
 from tests.bench.reconstruct.measure import UPRIGHT_MEAN, Measured, Way, judged
 from tests.bench.reconstruct.observed import Looking, Observed, look
-from tests.bench.reconstruct.results import by_action_table, figures_of, rows_of
+from tests.bench.reconstruct.results import by_action_table, dataset_figures, figures_of, rows_of
 from tests.synthetic.drawn_lesson import dot_networks, drawn_lesson
 
 pytestmark = pytest.mark.slow
@@ -65,6 +65,17 @@ def test_the_headline_is_the_mean_of_the_five_upright_actions_and_nothing_withou
         assert name in named
     assert figures_of(whole, ".cams2") == {"mpjpe_mm.cams2": pytest.approx(30.0)}
     assert "mpjpe_mm.every_frame" in figures_of(whole, ".every_frame")
+
+
+def test_a_data_sets_figures_have_the_names_of_the_rendered_lessons(every_frame: Measured) -> None:
+    """Its actions are other ones, so that a mean is over films."""
+    one = every_frame.smooth["badminton_clear"]
+    smooth = dict.fromkeys(UPRIGHT, one) | {UPRIGHT_MEAN: one}
+    whole = Measured("x", 0, "p", "w", smooth, smooth, {}, {}, "abc", every_frame.clip)
+    for suffix in ("", ".every_frame"):
+        found, known = dataset_figures([whole, whole], suffix), figures_of(whole, suffix)
+        assert {name: found[name] for name in found if name in known} == pytest.approx({n: known[n] for n in known if n in found})
+        assert set(found) - set(known) == {f"frames_without_pose{suffix}"}
 
 
 def test_rows_name_the_instants_without_a_pose_and_the_commit_that_predicted_the_crops(every_frame: Measured) -> None:

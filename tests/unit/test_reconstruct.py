@@ -1,11 +1,13 @@
 """From pictures to figures: what is measured of a lesson whose every joint can be seen is how good fusion is, and nothing else."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from edge.observe import PersonDetector
+from models.arrays import Float
 from models.messages.observation import Observation
 from models.skeleton import coco
 from tests.bench.footage_run import frame_by_frame
@@ -16,6 +18,7 @@ from tests.bench.reconstruct.keypoints import Seen, by_frame, interpolated, pupi
 from tests.bench.reconstruct.lesson import Lesson, Span
 from tests.bench.reconstruct.observed import DELAY_NS, Looking, Observed, look, observed
 from tests.synthetic.drawn_lesson import DotDetector, DotPose, dot_networks, drawn_lesson
+from tests.synthetic.gym import ring_rig
 
 pytestmark = pytest.mark.slow
 
@@ -98,7 +101,7 @@ def test_each_frame_alone_jitters_more_than_the_smooth_motion(lesson: Lesson, ev
 
 
 def test_the_bound_follows_from_the_noise_that_was_measured(lesson: Lesson, seen: list[Seen], fused: Fused) -> None:
-    assert float(np.median(noise_px(seen[0]))) < 0.2
+    assert float(np.median(noise_px(lesson.rig.cameras[0], seen[0]))) < 0.2
     generator = np.random.default_rng(4)
     noisy = [
         Seen(
@@ -113,11 +116,28 @@ def test_the_bound_follows_from_the_noise_that_was_measured(lesson: Lesson, seen
         )
         for one in seen
     ]
-    assert float(noise_px(noisy[0]).mean()) == pytest.approx(3.0, rel=0.1), "a constant offset is no noise"
+    assert float(noise_px(lesson.rig.cameras[0], noisy[0]).mean()) == pytest.approx(3.0, rel=0.1), "a constant offset is no noise"
     bound = bound_mm(lesson.rig, noisy, fused.times_s, lesson.truth_m(fused.times_s))
     pixel_mm = 6.3 / 900 * 1e3
     assert float(np.nanmean(bound)) == pytest.approx(3.0 * pixel_mm * np.sqrt(3 / 8 * 3), rel=0.35)
     assert np.isfinite(bound).all()
+
+
+def test_noise_is_told_in_the_pixels_of_the_bound_which_knows_no_lens() -> None:
+    camera = replace(ring_rig(4).cameras[0], distortion=np.array((-0.25, 0.0, 0.0, 0.0, 0.0)))
+    generator, count = np.random.default_rng(4), 200
+    truth = np.array(camera.size_px) - (180.0, 80.0) + generator.uniform(-20, 20, (count, coco.COUNT, 2))
+
+    def through_the_lens(flat_px: Float) -> Float:
+        rays = np.concatenate(((flat_px - camera.matrix_px[:2, 2]) / camera.matrix_px[[0, 1], [0, 1]], np.ones((count, 17, 1))), -1)
+        return camera.project((4.0 * rays - camera.translation_m) @ camera.rotation)
+
+    noisy = truth + generator.normal(scale=3.0, size=truth.shape)
+    points, truth_px = through_the_lens(noisy), through_the_lens(truth)
+    assert float((points - truth_px).std()) < 2.5, "in a corner, a barrel makes all smaller"
+    ones, numbers = np.ones((count, coco.COUNT)), np.arange(float(count))
+    look = Seen(0, numbers, numbers / 30, points, ones, truth_px, np.zeros((count, coco.COUNT, 3)), ones.astype(np.bool_))
+    assert float(noise_px(camera, look).mean()) == pytest.approx(3.0, rel=0.1)
 
 
 def test_cameras_in_turns_are_interpolated_each_by_itself(lesson: Lesson) -> None:
@@ -145,6 +165,8 @@ def test_a_mean_over_actions_needs_every_one_of_them() -> None:
     figures = {"a": dict(zip(names, (1.0, 5.0, 1.0), strict=True)), "b": dict(zip(names, (3.0, 2.0, 2.0), strict=True))}
     assert mean_over(("a", "b"), figures) == {"mpjpe_mm": 2.0, "max_jump_mm": 5.0, "frames_without_pose": 3.0}
     assert mean_over(("a", "b", "c"), figures) == {}
+    figures["b"]["max_jump_mm"] = np.nan
+    assert np.isnan(mean_over(("a", "b"), figures)["max_jump_mm"]), "what is not known of one is not known of all"
 
 
 def test_by_frame_keeps_what_each_camera_saw_of_each_picture(seen: list[Seen]) -> None:

@@ -188,10 +188,10 @@ def on_dataset(options: argparse.Namespace) -> int:
         ]
         for way in (EVERY_FRAME, LIVE)
     )
-    for results, suffix in ((live, ""), (every, ".every_frame")):
+    for results, suffix in ((live, ""), (every, f".{EVERY_FRAME.name}")):
         report.add(dataset_figures(results, suffix))
         report.rows += [row for result in results for row in rows_of(result)]
-        report.tables.append(by_action_table(results, f"live rate{suffix}"))
+        report.tables.append(by_action_table(results, results[0].way))
     report.show({})
     print(f"written to {report.write(options.data)}")
     return 0

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.arrays import Bool, Float
+from models.camera.pinhole import Camera
 from models.camera.rig import Rig
 from models.skeleton import coco
 from tests.bench.metrics.alignment import pampjpe_mm
@@ -40,11 +41,6 @@ class Judged:
     found_m: Float
     truth_m: Float
 
-    @property
-    def distances_mm(self) -> Float:
-        """(n, 17)"""
-        return 1e3 * distances_m(self.found_m, self.truth_m)
-
 
 def judge(spans: Sequence[Span], times_s: Float, found_m: Float, truth_m: Callable[[Float], Float]) -> list[Judged]:
     """Each span's instants, by name of its action."""
@@ -69,7 +65,7 @@ def of_action(judged: Sequence[Judged]) -> dict[str, float]:
         "pck50_pct": pck_pct(distance_mm, PCK_MM),
         "pck_auc150_pct": pck_auc_pct(distance_mm, AUC_LIMIT_MM),
         "acc_error_mm": _mean([acceleration_error_mm(each.found_m, each.truth_m) for each in judged]),
-        "max_jump_mm": max(largest_jump_mm(each.found_m - each.truth_m) for each in judged),
+        "max_jump_mm": _largest([largest_jump_mm(each.found_m - each.truth_m) for each in judged]),
         "peak_speed_bias_pct": _mean([bias for each in judged for bias in peak_biases_pct(each)]),
         "missing_pct": error.missing_pct,
         "frames_without_pose": float(len(error.without_pose)),
@@ -96,9 +92,12 @@ def jitter_reduction_pct(smooth: Sequence[Judged], each_frame: Sequence[Judged])
     return 100 * (1 - _mean(ours) / _mean(raw))
 
 
-def noise_px(seen: Seen) -> Float:
-    """(17,) sigma in each pixel axis of the keypoints that are used, against the truth, about their mean error of this camera."""
-    error = np.where(seen.used[..., None], seen.points_px - seen.truth_px, np.nan)
+def noise_px(camera: Camera, seen: Seen) -> Float:
+    """(17,) sigma in each pixel axis of the keypoints that a camera saw and that are used, after undistortion.
+
+    Against the truth, about the joint's median error of this camera.
+    """
+    error = np.where(seen.used[..., None], camera.undistort(seen.points_px) - camera.undistort(seen.truth_px), np.nan)
     sigmas = np.full(coco.COUNT, np.nan)
     for joint in range(coco.COUNT):
         known = error[np.isfinite(error[:, joint, 0]), joint]
@@ -116,11 +115,11 @@ def bound_mm(rig: Rig, seen: Sequence[Seen], times_s: Float, truth_m: Float) -> 
         times_s: (n,) instants.
         truth_m: (n, 17, 3) at them.
     """
-    sigma = np.stack([noise_px(camera) for camera in seen], axis=-1)
+    sigma = np.stack([noise_px(rig.cameras[look.camera], look) for look in seen], axis=-1)
     usable: list[Bool] = []
-    for camera in seen:
-        nearest = np.abs(np.subtract.outer(times_s, camera.times_s)).argmin(axis=1)
-        usable.append(np.asarray(camera.used[nearest] & np.isfinite(camera.points_px[nearest, :, 0])))
+    for look in seen:
+        nearest = np.abs(np.subtract.outer(times_s, look.times_s)).argmin(axis=1)
+        usable.append(np.asarray(look.used[nearest] & np.isfinite(look.points_px[nearest, :, 0])))
     there = np.stack(usable, axis=-1) & np.isfinite(sigma)
     return 1e3 * triangulation_bound_m(rig, truth_m, np.broadcast_to(np.nan_to_num(sigma, nan=1.0), there.shape), there)
 
@@ -142,8 +141,14 @@ def mean_over(actions: Sequence[str], figures: Mapping[str, Mapping[str, float]]
     combined = {}
     for name in figures[actions[0]]:
         values = [figures[action][name] for action in actions]
-        combined[name] = max(values) if name == "max_jump_mm" else sum(values) if name == "frames_without_pose" else _mean(values)
+        combined[name] = (
+            _largest(values) if name == "max_jump_mm" else sum(values) if name == "frames_without_pose" else _mean(values)
+        )
     return combined
+
+
+def _largest(values: Sequence[float]) -> float:
+    return float(np.max(values))  # not `max`, which overlooks a NaN that comes later
 
 
 def _mean(values: Sequence[float]) -> float:

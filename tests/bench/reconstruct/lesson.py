@@ -10,7 +10,6 @@ from models.camera.rig import Rig
 
 START_NS: Final = 1_000_000_000
 """Time of a lesson's beginning. Whole seconds, so that fusion's output grid of 30 Hz has an instant there."""
-ROLL: Final = "forward_roll"
 UPRIGHT: Final = ("basketball_shot", "long_jump", "badminton_clear", "volleyball_spike", "soccer_kick")
 """The five of the six actions whose mean is the headline figure; the roll goes by its own name."""
 

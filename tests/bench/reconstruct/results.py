@@ -87,7 +87,8 @@ def lost(measured: Measured) -> int:
 
 
 def dataset_figures(measured: Iterable[Measured], suffix: str) -> dict[str, float]:
-    """Means over films."""
-    films = [each.smooth[UPRIGHT_MEAN] for each in measured]
-    figures = mean_over([str(number) for number in range(len(films))], {str(number): film for number, film in enumerate(films)})
-    return {f"{name}{'.mean' if name.endswith('mpjpe_mm') else ''}{suffix}": value for name, value in figures.items()}
+    """Means over films, by the names that the rendered lessons' have."""
+    films = {str(number): each.smooth[UPRIGHT_MEAN] for number, each in enumerate(measured)}
+    figures = mean_over(list(films), films)
+    names = {"p95_mm": f"mpjpe_mm.p95{suffix}"} | {name: f"{name}{suffix or '.mean'}" for name in ("mpjpe_mm", "pampjpe_mm")}
+    return {names.get(name, f"{name}{suffix}"): value for name, value in figures.items()}
