@@ -12,6 +12,7 @@ from pathlib import Path
 
 _ROOT = Path(__file__).parents[3]
 _CODE = ("edge/simulation", "models/body", "models/camera", "models/motions", "models/skeleton")
+_FILES = ("edge/footage/transcode.py", "models/compiled.py")
 _DATA = ("models/body/data", "models/motions/data")
 _NO_PICTURES = {"command.py", "presets.py", "recipe.py", "render_lesson.py", "strip.py", "workers.py"}
 _NOT_RUN = {"build", "recorded", "shipped"}
@@ -32,6 +33,7 @@ def _files() -> Iterator[Path]:
         for path in (_ROOT / folder).rglob("*.py"):
             if path.name not in _NO_PICTURES and not _NOT_RUN & set(path.relative_to(_ROOT).parts):
                 yield path
+    yield from (_ROOT / name for name in _FILES)
     for folder in _DATA:
         yield from (path for path in (_ROOT / folder).glob("*") if path.is_file())
 
