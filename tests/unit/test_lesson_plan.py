@@ -13,6 +13,7 @@ from edge.simulation.command import find_plan
 from edge.simulation.lesson.plan import Pastime, Plan, decode_plan, encode_plan, fingerprint, schema
 from edge.simulation.lesson.plan_check import require_sound
 from edge.simulation.lesson.presets import PRESETS, acceptance, six_actions, tiny
+from edge.simulation.rigs.arrangements import NAMES
 from edge.simulation.split import SPLITS
 from models.errors import UserError
 from models.motions.between import PASTIMES
@@ -67,6 +68,13 @@ def test_every_plan_that_comes_with_kinebox_is_sound_and_the_same_after_a_trip_t
     again = sound(encode_plan(plan).decode())
     assert again == plan
     assert fingerprint(again, "recipe") == fingerprint(plan, "recipe")
+
+
+def test_lessons_of_all_seeds_rigs_and_splits_have_names_of_their_own() -> None:
+    plans = [acceptance(seed, split, rig) for seed in (1, 10, 100, 2**31 - 1) for split in SPLITS for rig in NAMES]
+    assert len({plan.name for plan in plans}) == len(plans)
+    for plan in plans:
+        assert decode_plan(encode_plan(plan), "plan").name == plan.name
 
 
 def test_presets_are_found_by_name_and_what_is_none_is_said() -> None:
