@@ -18,7 +18,7 @@ class Performance:
     """Parameters of a performance.
 
     Attributes:
-        action: name of the action, a key of `models.motions.actions.ACTIONS`.
+        action: name of the action, a key of `models.motions.actions.library.ACTIONS`.
         handed: the side that throws, hits, kicks or leads.
         tempo: 1 is the standard's; 1.2 takes a sixth less time. Within `TEMPO`. Flight and fall keep to gravity.
         amplitude: of the movement against the standard's. Within `AMPLITUDE`.

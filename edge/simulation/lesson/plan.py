@@ -2,7 +2,7 @@
 
 A plan is written in TOML and validated strictly: a key that is not known, a value out of bounds, an action or a fault that nobody
 knows is refused in one line that names it. Times count in seconds from the lesson's beginning, places in metres on the floor from
-the court's middle, and directions in degrees from the x axis to the y axis. `docs/simulation.md` is written from this schema.
+the court's middle, and directions in degrees from the x axis to the y axis. `docs/simulation.md` names every key.
 """
 
 import hashlib
@@ -219,5 +219,5 @@ def fingerprint(plan: Plan, recipe: str) -> str:
 
 
 def schema() -> dict[str, Any]:
-    """JSON schema of a plan, from which its documentation is written."""
+    """JSON schema of a plan, against which a test holds its documentation."""
     return msgspec.json.schema(Plan)

@@ -6,7 +6,7 @@
 | clothes | colours of twelve hues | colours of the twelve hues between those |
 | random numbers | streams of "development" | streams of "test" |
 
-So nobody who is measured on was ever developed on, nor is anybody dressed alike.
+So nobody who is measured on was ever developed on, nor does anybody wear the same colour, but for white and greys.
 """
 
 import colorsys

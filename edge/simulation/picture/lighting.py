@@ -23,7 +23,7 @@ def lit(places: Float, normals: Float, colours: Float, lamps: Float, ambient: Fl
         normals: (V, 3) unit, outwards.
         colours: (V, 3) linear.
         lamps: (L, 6) as `lamp_numbers` gives them.
-        ambient: (3,) light from everywhere: a fifth less from below than from the side, since floors are darker than walls.
+        ambient: (3,) light from everywhere: a quarter less from below than from the side, since floors are darker than walls.
         eye: (3,) the camera's place.
         gloss: 0 dull to 1 polished.
 

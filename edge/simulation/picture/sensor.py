@@ -18,7 +18,7 @@ class Sensor:
     """A sensor with its amplifier and the camera's picture processing.
 
     Attributes:
-        exposure: factor on the light; 1 shows a white wall in full light as white.
+        exposure: gain on light and noise alike, as an amplifier's; 1 shows a white wall in full light as white.
         full_well_e: electrons of a pixel that is just white: shot noise is its root.
         read_noise_e: standard deviation in electrons.
         vignetting: share of the light that the corners lose.

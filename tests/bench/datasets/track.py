@@ -15,7 +15,7 @@ def between_samples(times_s: Float, points_m: Float) -> Callable[[Float], Float]
     """Places (m, J, 3) at (m,) instants by a cubic spline through each joint's samples, wherever they follow one another.
 
     Args:
-        times_s: (n,) instants of the samples, evenly spaced.
+        times_s: (n,) instants of the samples, ascending.
         points_m: (n, J, 3); NaN where there is none. A gap stays a gap, and so does what lies beyond the ends.
     """
     step = float(np.diff(times_s).mean()) if len(times_s) > 1 else 0.0

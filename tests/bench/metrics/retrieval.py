@@ -62,7 +62,7 @@ def moments(found_s: Sequence[float], true_s: Sequence[float], tolerance_s: floa
 def intervals(
     found_s: Sequence[tuple[float, float]], true_s: Sequence[tuple[float, float]], least_overlap: float = 0.5
 ) -> Retrieval:
-    """Attempts, as (begin, end): a pair's common time is at least `least_overlap` of the time that either takes."""
+    """Attempts, as (begin, end): a pair's common time is at least `least_overlap` of the time that the two cover together."""
     found, true = (np.asarray(spans, np.float64).reshape(-1, 2) for spans in (found_s, true_s))
     begin = np.maximum.outer(found[:, 0], true[:, 0])
     end = np.minimum.outer(found[:, 1], true[:, 1])
