@@ -104,9 +104,9 @@ def _racket_arm(line: Timeline, times: tuple[float, ...], faults: tuple[float, f
     # The elbow leads: it goes up and to the front while the racket falls, past the shoulder, behind the back.
     reach = np.array((0.36, 0.34, 1.0)) * (1 - 0.45 * low) + np.array((0.8, 0.8, 0.0)) * 0.45 * low
     drawn, lead = np.array((-0.22, 0.9, 0.25)), np.array((0.03, 0.9, 0.48 - 0.3 * low))
-    line.key(drive + 0.35 * (hit - drive), right_arm=Arm(_direction(drawn), (-0.22, -0.1, 0.95), 112 * bent, -4, -48, 12, 75))
-    line.key(hit - 0.12 * quick, right_arm=Arm(_direction(lead), (-0.28, -0.42, 0.8), 122 * bent, 0, -55, 12, 75))
-    line.key(hit - 0.064 * quick, right_arm=Arm(_direction(lead), (-0.2, -0.6, 0.75), 112 * bent, -8, -48, 8, 75))
+    line.key(drive + 0.35 * (hit - drive), right_arm=Arm(_direction(drawn), (-0.06, -0.2, 0.95), 112 * bent, -4, -48, 12, 75))
+    line.key(hit - 0.12 * quick, right_arm=Arm(_direction(lead), (-0.13, -0.46, 0.82), 122 * bent, 0, -55, 12, 75))
+    line.key(hit - 0.064 * quick, right_arm=Arm(_direction(lead), (-0.1, -0.6, 0.77), 112 * bent, -8, -48, 8, 75))
     line.key(hit, right_arm=Arm(_direction(reach), (-0.2, -0.9, 0.35), 30 + 50 * low, 5, -4, -18, 75))
     line.key(hit + 0.022 * quick, right_arm=Arm((0.72, 0.2, 0.95 - 0.6 * low), (-0.15, -0.9, 0.4), 9 + 50 * low, 22, 12, -24, 75))
     line.key(hit + 0.08 * quick, right_arm=Arm((0.95, 0.0, 0.3 - 0.2 * low), (-0.05, -0.9, 0.7), 16 + 35 * low, 40, 22, -10, 75))
