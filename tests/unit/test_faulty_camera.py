@@ -16,23 +16,11 @@ from edge.process import GRAB_TIMEOUT_S
 from models.config.site import FaultConfig
 from models.errors import UserError
 from tests.small_video import spot_picture, video_of
+from tests.virtual_clock import VirtualClock
 
 SECOND_NS = 1_000_000_000
 START_NS = 50 * SECOND_NS
 VIDEO = video_of([spot_picture(np.array((20.0 + k, 20.0)), 5.0, (64, 48)) for k in range(40)])
-
-
-@dataclass
-class VirtualClock:
-    """Time passes only while somebody waits."""
-
-    t_ns: int = START_NS
-
-    def now_ns(self) -> int:
-        return self.t_ns
-
-    def sleep_until(self, t_ns: int) -> None:
-        self.t_ns = max(self.t_ns, t_ns)
 
 
 @dataclass
@@ -50,7 +38,7 @@ class Shown:
 
 def film(faults: list[FaultConfig], seconds: float, video: Video = VIDEO) -> Shown:
     """Grab for so long as an edge process does."""
-    clock, shown, grabs = VirtualClock(), Shown(), 0
+    clock, shown, grabs = VirtualClock(START_NS), Shown(), 0
 
     def opened() -> Source:
         shown.openings += 1
@@ -116,7 +104,7 @@ def test_a_fault_comes_again_as_often_as_it_is_asked_for() -> None:
 
 
 def test_a_stall_is_not_counted_as_pictures_that_this_process_missed() -> None:
-    clock = VirtualClock()
+    clock = VirtualClock(START_NS)
     source = FaultySource(VideoSource(VIDEO, Schedule(START_NS, 0, 30.0), clock), Script([fault("stall")], START_NS), clock)
     while clock.t_ns < START_NS + 5 * SECOND_NS:
         source.grab(GRAB_TIMEOUT_S)
@@ -131,7 +119,7 @@ def test_a_camera_whose_clock_stays_wrong_is_opened_again() -> None:
 
 def pictures(faults: list[FaultConfig], seconds: float = 5.0, seed: int = 0) -> list[tuple[int, Frame]]:
     """What the faults let through, with the instant of its arrival, to whoever grabs all the time and refuses nothing."""
-    clock, seen = VirtualClock(), list[tuple[int, Frame]]()
+    clock, seen = VirtualClock(START_NS), list[tuple[int, Frame]]()
     source = FaultySource(VideoSource(VIDEO, Schedule(START_NS, 0, 30.0), clock), Script(faults, START_NS, seed), clock)
     while clock.t_ns < START_NS + seconds * SECOND_NS:
         if (frame := source.grab(GRAB_TIMEOUT_S)) is not None:
@@ -237,7 +225,7 @@ def test_whatever_a_camera_does_what_is_passed_on_is_new_and_of_a_possible_time(
 
 @pytest.mark.parametrize("error", [SourceError("camera 'cam01' is unplugged"), UserError("camera 'cam01': film.avi is missing")])
 def test_a_camera_that_cannot_be_opened_again_is_tried_for_ever_with_growing_pauses(error: Exception) -> None:
-    clock, tries = VirtualClock(), list[int]()
+    clock, tries = VirtualClock(START_NS), list[int]()
     inner = FaultySource(VideoSource(VIDEO, Schedule(START_NS, 0, 30.0), clock), Script([fault("end")], START_NS), clock)
 
     def opened() -> Source:
@@ -262,4 +250,4 @@ def test_a_camera_that_cannot_be_opened_at_the_start_is_the_persons_business() -
         raise UserError("camera 'cam01': film.avi is missing")
 
     with pytest.raises(UserError):
-        WatchedSource(opened, "cam01", VirtualClock())
+        WatchedSource(opened, "cam01", VirtualClock(START_NS))

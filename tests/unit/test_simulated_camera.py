@@ -1,7 +1,6 @@
 """A rendered lesson plays as it was recorded: its times, its faults, and over and over."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -18,25 +17,15 @@ from models.config.site import SITE_VERSION, CameraConfig, FaultConfig, Site, de
 from models.errors import UserError
 from tests.lesson_folder import CAMERAS, PICTURES, draw_lesson, plan_with
 from tests.small_video import SIZE_PX
+from tests.virtual_clock import VirtualClock
 
 SECOND_NS = 1_000_000_000
 START_NS = 7 * SECOND_NS
 
 
-@dataclass
-class VirtualClock:
-    t_ns: int = START_NS
-
-    def now_ns(self) -> int:
-        return self.t_ns
-
-    def sleep_until(self, t_ns: int) -> None:
-        self.t_ns = max(self.t_ns, t_ns)
-
-
 def played(folder: Path, plan: Plan, camera: str, seconds: float) -> list[Frame]:
     draw_lesson(folder, plan)
-    clock, frames = VirtualClock(), list[Frame]()
+    clock, frames = VirtualClock(START_NS), list[Frame]()
     source, _ = open_simulated(folder, camera, START_NS, clock)
     while clock.t_ns < START_NS + seconds * SECOND_NS:
         if (frame := source.grab(0.2)) is not None:
