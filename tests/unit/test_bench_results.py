@@ -1,5 +1,6 @@
 """Figures by their fixed names, margins over others, and what a user of a data set is told."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ from tests.bench.reconstruct.against_peers import OURS, Standing, margin_figures
 from tests.bench.reconstruct.lesson import UPRIGHT, Lesson
 from tests.bench.reconstruct.measure import UPRIGHT_MEAN, Measured, Way, judged
 from tests.bench.reconstruct.observed import Looking, Observed, look
-from tests.bench.reconstruct.results import by_action_table, dataset_figures, figures_of, rows_of
+from tests.bench.reconstruct.results import by_action_table, change_pct, dataset_figures, figures_of, rows_of
 from tests.synthetic.drawn_lesson import dot_networks, drawn_lesson
 
 pytestmark = pytest.mark.slow
@@ -76,6 +77,17 @@ def test_a_data_sets_figures_have_the_names_of_the_rendered_lessons(every_frame:
         found, known = dataset_figures([whole, whole], suffix), figures_of(whole, suffix)
         assert {name: found[name] for name in found if name in known} == pytest.approx({n: known[n] for n in known if n in found})
         assert set(found) - set(known) == {f"frames_without_pose{suffix}"}
+
+
+def test_a_variant_on_fewer_lessons_is_compared_with_the_same_lessons(every_frame: Measured) -> None:
+    def lesson_of(seed: int, mpjpe_mm: float) -> Measured:
+        smooth = dict.fromkeys(UPRIGHT, every_frame.smooth["badminton_clear"] | {"mpjpe_mm": mpjpe_mm})
+        return replace(every_frame, seed=seed, smooth=smooth)
+
+    live = [lesson_of(seed, 10.0 * (seed + 1)) for seed in range(5)]
+    assert change_pct([lesson_of(1, 30.0), lesson_of(0, 15.0)], live) == pytest.approx(50.0)
+    assert np.isnan(change_pct([lesson_of(7, 30.0)], live))
+    assert np.isnan(change_pct([every_frame], live)), "an action is missing"
 
 
 def test_rows_name_the_instants_without_a_pose_and_the_commit_that_predicted_the_crops(every_frame: Measured) -> None:

@@ -12,9 +12,10 @@ synchronised. `.corrected`: the landmark bias taken off (see `services.fusion.la
 `margin_pct.<peer>.live_rate` (`--full`): the live rate, each camera's track interpolated for the peers to the output's instants.
 `crb_ratio` is the mean error over the Cramer-Rao bound of one frame at the measured noise, without prior: see `metrics.bound`.
 
-By default `.cams3`, `.cams2` and `.freerun` are of two lessons, and the peers are asked in their own defaults and in the settings
-that did best elsewhere, without RANSAC: chosen to take ten minutes on two cores once the pictures are rendered. `--full` takes five
-lessons for all, every setting, and other rigs beside.
+By default `.cams3`, `.cams2` and `.freerun` are of two lessons; `mpjpe_change_pct.cams3` and so on compare them with the live
+rate on the very same ones. The peers are asked in their own defaults and in the settings that did best elsewhere, without RANSAC:
+chosen to take ten minutes on two cores once the pictures are rendered. `--full` takes five lessons for all, every setting, and
+other rigs beside.
 
 `make bench-reconstruct DATASET=h36m|panoptic|shelf PATH=folder` measures on films that the user holds instead, on all joints that
 they have a truth for: `tests.bench.datasets` says what is wanted in the folder.
@@ -45,7 +46,7 @@ from tests.bench.reconstruct.lesson import UPRIGHT, Lesson
 from tests.bench.reconstruct.measure import Measured, Way, measure
 from tests.bench.reconstruct.observed import CONFIG, LIVE_HZ, RATE_HZ
 from tests.bench.reconstruct.rendered import render_all
-from tests.bench.reconstruct.results import by_action_table, by_pupil_table, dataset_figures, figures_of, lost, rows_of
+from tests.bench.reconstruct.results import by_action_table, by_pupil_table, change_pct, dataset_figures, figures_of, lost, rows_of
 from tests.bench.reconstruct.work import measure_plan
 from tests.bench.report import Report
 from tests.bench.seeds import COUNT, seeds_of
@@ -149,6 +150,8 @@ def on_rendered(options: argparse.Namespace) -> int:
     if bound is not None:
         report.add({"crb_mm": bound.mean, "crb_ratio": mean / bound.mean, "crb_ratio.every_frame": every / bound.mean})
     report.add({"margin_pct.corrected": margin_pct(corrected, mean)})
+    changes = {name: change_pct(results, measured[LIVE.name]) for name, results in measured.items() if name != LIVE.name}
+    report.add(changes, "mpjpe_change_pct.")
     report.rows += [row for results in measured.values() for result in results for row in rows_of(result)]
     report.tables += [by_action_table(results, name) for name, results in measured.items() if name in {LIVE.name, EVERY_FRAME.name}]
     report.tables.append(by_pupil_table(measured[LIVE.name]))

@@ -1,5 +1,7 @@
 """Figures by their fixed names, rows and tables of what was measured."""
 
+import math
+import statistics
 from collections.abc import Iterable, Sequence
 from typing import Final
 
@@ -84,6 +86,17 @@ def rows_of(measured: Measured) -> list[dict[str, object]]:
 def lost(measured: Measured) -> int:
     """Frames of all attempts in which the smooth motion has no pose."""
     return sum(len(instants) for instants in measured.without_pose.values())
+
+
+def change_pct(measured: Sequence[Measured], live: Sequence[Measured]) -> float:
+    """By how much the headline of these lessons differs from that of the live rate on the very same ones, by their seeds."""
+    headline = {each.seed: _headline_mm(each) for each in live}
+    own = statistics.fmean(map(_headline_mm, measured))
+    return 100 * (own / statistics.fmean(headline.get(each.seed, math.nan) for each in measured) - 1)
+
+
+def _headline_mm(measured: Measured) -> float:
+    return mean_over(UPRIGHT, measured.smooth).get("mpjpe_mm", math.nan)
 
 
 def dataset_figures(measured: Iterable[Measured], suffix: str) -> dict[str, float]:
