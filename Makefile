@@ -33,7 +33,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions lock clean distclean test-faults test-mutations test-motions test-rendering bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-networks twin
+.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions lock clean distclean test-faults test-mutations test-motions test-rendering bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-simulate bench-networks twin
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
@@ -41,7 +41,7 @@ help: ## Show this list
 run: setup ## Start KineBox on the built-in lesson (SOURCE=footage or footage2: films of people) and print the address of the page
 	@exec kinebox run --site $(SITE) --data $(DATA)
 
-test: setup $(FILMS) ## Every test: unit, property, golden, real sockets and processes, the page in Chromium
+test: setup $(FILMS) ## All tests but the four suites below: unit, property, golden, real sockets and processes, the page in Chromium
 	@$(MAKE) --no-print-directory lint
 	cd $(WEB) && npm run --silent check && npm test
 	$(PYTHON) -m pytest -n 3 --dist loadfile # many tests wait, for processes and deadlines
@@ -150,6 +150,9 @@ bench-footage2: setup $(FILM_OF_footage2) ## The pupil among two people, on the 
 
 bench-reconstruct: $(VENV)/.ready networks kernels build/peers/pose2sim/.ready build/peers/aniposelib/.ready ## Rendered lessons through the whole box, against their truth (ARGS=--full; or DATASET=h36m|panoptic|shelf PATH=folder)
 	$(PYTHON) -m tests.bench.reconstruct --data $(DATA) $(if $(DATASET),--dataset $(DATASET) --path "$(DATASET_PATH)") $(ARGS)
+
+bench-simulate: $(VENV)/.ready kernels ## Time and memory that rendering a lesson of 24 s takes; some minutes
+	$(PYTHON) -m tests.bench.simulate --data $(DATA) $(ARGS)
 
 bench-networks: $(VENV)/.ready networks kernels ## How well the pose networks see simulated pupils, and the landmark bias
 	$(PYTHON) -m tests.bench.networks --data $(DATA) $(ARGS)
