@@ -62,7 +62,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
     low = snapped(raised + natural.seconds(0.62))
     off = snapped(low + 0.30 * size * (1 - 0.12 * no_crouch))
     on = snapped(off + air)
-    deep = snapped(on + 0.40 * size)
+    deep = snapped(on + 0.35 * size)
     times = _Times(raised, low, off, on, deep, snapped(deep + natural.seconds(0.85)))
 
     line.stand(_STILL_S)
@@ -86,6 +86,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
         ),
     )
     line.flight(off, on)
+    line.key(on + 0.4 * (deep - on), Body(tip=-6, lean=57 - 16 * stiff))
     line.key(deep, Body(at=(far - 0.04, 0.0), height=0.59 + 0.13 * stiff, tip=40 - 11 * stiff, lean=22 - 7 * stiff, gaze=(0, 15)))
     _swing_arms(line, times, max(0.0, 1 - 0.5 * no_swing))
     for side in _SIDES:

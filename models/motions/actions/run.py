@@ -60,10 +60,16 @@ _KNEE_LIFT: Final = 1.4
 """How much further the thighs come forward than the recorded runner's, who jogs; so do his arms hang, whose elbows a sprinter bends
 by this much, and lets swing by this share of his:"""
 _ELBOW_DEG, _RECORDED_ELBOW_DEG, _ELBOW_SHARE = 92.0, 78.0, 0.4
+_HIP_BACK_RAD: Final = np.radians(34.0)
+"""No hip lets its thigh go further behind the pelvis: in who leans back, the leg that pushed off rises less behind him."""
 _FIST_DEG: Final = 62.0
 _ON, _OFF = 0.48, 0.76
 """Phases of the cycle at which the left foot lands and leaves."""
 _RECORDED_TIP_DEG: Final = 26.0
+_SINKS: Final = 0.025
+"""How much lower the pelvis is when an overstriding foot lands: a leg that reaches further to the front reaches less far down."""
+_REACH, _LONGEST_STANCE = 0.44, 0.88
+"""How far in front of the pelvis a foot can land, and how far the pelvis can go over a foot that stands, legs."""
 _HEIGHTS: Final = (0.945, 0.955)
 """Of the pelvis, in its height when standing: as a foot lands and as it leaves."""
 
@@ -96,10 +102,11 @@ def perform(performance: Performance, subject: Subject) -> Motion:
     end = snapped(falls.on_s[-1] + natural.seconds(0.75))
 
     line.stand(_STILL_S)
-    _put_feet(line, falls, _overstride(performance))
+    over = _overstride(performance)
+    _put_feet(line, falls, over)
     for number in range(count):
         for at_s, x, height in (
-            (falls.on_s[number], falls.behind[number], _HEIGHTS[0]),
+            (falls.on_s[number], falls.behind[number], _HEIGHTS[0] - _SINKS * over * (1 <= number < count - 2)),
             (falls.off_s[number], falls.before[number], _HEIGHTS[1]),
         ):
             if number < count - 2 or at_s == falls.on_s[number]:
@@ -134,9 +141,11 @@ def _footfalls(performance: Performance, natural: Natural, leg_m: float) -> _Foo
     slows = on[_FASTEST + 1] + 0.6 * times[_FASTEST]
     slower = splines.minimum_jerk((at_s - slows) / (last - slows))
     run = np.cumsum(speed * (faster - slower)) / RATE_HZ
-    behind, before = np.interp(on, at_s, run), np.interp(off, at_s, run)
+    behind = np.interp(on, at_s, run)
+    off = np.minimum(off, snap(np.interp(behind + _LONGEST_STANCE, run, at_s)))
+    before = np.interp(off, at_s, run)
     ahead = ahead + 0.18 * _overstride(performance) * (ahead < _BRAKES)
-    places = behind + ahead * (before - behind)
+    places = behind + np.minimum(ahead * (before - behind), _REACH)
     places[-2:] = run[-1]
     sides: tuple[Side, ...] = tuple("right" if number % 2 == 0 else "left" for number in range(len(on)))
     return _Footfalls(sides, on, off, places, np.asarray(behind), np.asarray(before))
@@ -192,7 +201,7 @@ def _swing_limbs(line: Timeline, falls: _Footfalls, performance: Performance) ->
     at_s = np.arange(start, stop, (falls.on_s[_FULL + 2] - falls.on_s[_FULL]) / 12)
     phases = _phase(falls, at_s)
     back = performance.severity("leans_back")
-    tips = np.interp(at_s, falls.on_s, _STEPS[:, 3]) - 8 * back
+    tips = np.interp(at_s, falls.on_s, _STEPS[:, 3]) - 4 * back
     drive = max(0.0, 1 - 0.75 * performance.severity("no_arm_drive"))
     for number, when in enumerate(at_s):
         left, right = float(phases[number]), float(phases[number]) + 0.5
@@ -201,7 +210,7 @@ def _swing_limbs(line: Timeline, falls: _Footfalls, performance: Performance) ->
         side = np.degrees(_wave("pelvis", 0, left)) * fade
         body = Body(
             tip=float(tips[number]),
-            lean=6.0 - 8 * back,
+            lean=6.0 - 12 * back,
             facing=turn,
             side=0.6 * side,
             bow=-0.6 * side,
@@ -258,6 +267,7 @@ def _leg(phase: float, tip_deg: float, performance: Performance) -> Leg:
     lifts = max(1 - 0.68 * performance.severity("no_knee_lift"), 0.0)
     angle = float(np.arctan2(thigh[0], -thigh[2]))
     angle *= _KNEE_LIFT * lifts if angle > 0 else 1.0
+    angle = max(angle, -_HIP_BACK_RAD)
     return Leg(
         thigh=(float(np.sin(angle)), 0.04, -float(np.cos(angle))),
         bend=float(np.degrees(_wave("left_knee", 1, phase))) * (0.4 + 0.6 * lifts) + 5,
