@@ -65,14 +65,18 @@ def _feet(line: Timeline, times: tuple[float, ...], turn: float, amplitude: floa
     stride = 0.5 * amplitude
     turned = start + 0.58 * (back - start)
     line.step("right", start, turned, (-stride, -0.08), yaw=7 + 50 * turn, height=0.07)
+    on_toes = 22 * (1 - turn)  # a heel behind somebody who looks to the net cannot stay down
+    line.pitch(turned, "right", 0.0)
+    line.pitch(back, "right", on_toes)
     line.step("left", turned + 0.02, back - 0.02, (0.08, 0.02), yaw=7 - 29 * turn, height=0.04)
-    line.step("right", drive + 0.06, through, (0.42 * amplitude, -0.04), yaw=20, height=0.1)
+    line.step("right", drive + 0.06, through, (0.42 * amplitude, -0.04), yaw=20, height=0.1, heel=on_toes)
     line.step("right", rested, rested + 0.54 * (end - rested), (0.0, 0.0), yaw=7, height=0.06)
     line.step("left", rested + 0.56 * (end - rested), end - 0.04, (0.0, 0.0), yaw=7, height=0.05)
     line.pitch(hit, "left", 14.0)
     line.pitch(through, "left", 25.0)
     line.pitch(rested, "left", 12.0)
     line.stand(start - 0.05)
+    line.key(turned + 0.02, Body(facing=-24 * turn))  # the hips turn on when the left foot may turn with them
     line.key(back, Body(at=(-0.33 * amplitude, -0.07), height=0.94))
     line.key(drive, Body(at=(-0.27 * amplitude, -0.05), height=0.935))
     line.key(hit, Body(at=(0.0, 0.04), height=1.0))
@@ -105,7 +109,7 @@ def _racket_arm(line: Timeline, times: tuple[float, ...], faults: tuple[float, f
     reach = np.array((0.36, 0.34, 1.0)) * (1 - 0.45 * low) + np.array((0.8, 0.8, 0.0)) * 0.45 * low
     drawn, lead = np.array((-0.22, 0.9, 0.25)), np.array((0.03, 0.9, 0.48 - 0.3 * low))
     line.key(drive + 0.35 * (hit - drive), right_arm=Arm(_direction(drawn), (-0.06, -0.2, 0.95), 112 * bent, -4, -48, 12, 75))
-    line.key(hit - 0.12 * quick, right_arm=Arm(_direction(lead), (-0.13, -0.46, 0.82), 122 * bent, 0, -55, 12, 75))
+    line.key(hit - 0.12 * quick, right_arm=Arm(_direction(lead), (-0.08, -0.46, 0.82), 122 * bent, 0, -55, 12, 75))
     line.key(hit - 0.064 * quick, right_arm=Arm(_direction(lead), (-0.1, -0.6, 0.77), 112 * bent, -8, -48, 8, 75))
     line.key(hit, right_arm=Arm(_direction(reach), (-0.2, -0.9, 0.35), 30 + 50 * low, 5, -4, -18, 75))
     line.key(hit + 0.022 * quick, right_arm=Arm((0.72, 0.2, 0.95 - 0.6 * low), (-0.15, -0.9, 0.4), 9 + 50 * low, 22, 12, -24, 75))
