@@ -11,6 +11,7 @@ from models.messages.addressed import read_health
 from models.messages.health import Health, MachineHealth, State, SupervisorHealth
 from models.messages.trouble import Trouble, messages_refused
 from models.process import Bus, Subscription
+from services.supervisor.speaker import Speaker
 from services.support.health import HealthReporter, ResourceMeter
 from services.support.heartbeat import Beat, read_beat
 
@@ -52,6 +53,7 @@ class _Joined:
     beats: Subscription
     present: set[str]
     reporter: HealthReporter
+    speaker: Speaker
 
 
 class BusLink:
@@ -119,16 +121,20 @@ class BusLink:
             supervisor: what became of the processes.
         """
         joined = self._joined
-        if joined is None or not joined.reporter.due():
+        if joined is None or joined.speaker.busy or not joined.reporter.due():
             return
         refused, self._refused = self._refused, 0
         troubles = (*troubles, messages_refused(refused)) if refused else troubles
         given_up = tuple(Trouble("given_up", f"{name} is given up: {trouble.words}") for name, trouble in failed.items())
         state: State = "failed" if failed else "degraded" if troubles else "ok"
-        own = joined.reporter.report(state, (*given_up, *troubles), machine=machine, supervisor=supervisor)
-        for name, trouble in failed.items():
-            message = Health(name, own.pid, own.t_ns, "failed", (trouble,), cpu_cores=0.0, rss_mib=0.0)
-            joined.bus.publish(topics.health(name), codec.encode(message))
+
+        def words() -> None:
+            own = joined.reporter.report(state, (*given_up, *troubles), machine=machine, supervisor=supervisor)
+            for name, trouble in failed.items():
+                message = Health(name, own.pid, own.t_ns, "failed", (trouble,), cpu_cores=0.0, rss_mib=0.0)
+                joined.bus.publish(topics.health(name), codec.encode(message))
+
+        joined.speaker.say(words)
 
     def close(self) -> None:
         """Leave the bus."""
@@ -146,6 +152,7 @@ class BusLink:
             self._stop.set()
             joined, self._joined = self._joined, None
         if joined is not None:
+            joined.speaker.end()
             joined.bus.close()
 
     def _open(self, stop: threading.Event) -> None:
@@ -179,6 +186,8 @@ class BusLink:
 
     def _join(self, bus: Bus, stop: threading.Event) -> None:
         """Declare what the supervisor has on a bus, unless `stop` is set: then the bus that it was is not wanted any more."""
+        from services.bus.zenoh_bus import BusError  # noqa: PLC0415 - as above
+
         if stop.is_set():
             bus.close()
             return
@@ -191,9 +200,10 @@ class BusLink:
         beats = bus.subscribe(topics.ALL_BEATS, keep=1)
         bus.watch_alive(topics.ALL_ALIVE, seen)
         bus.declare_alive(topics.alive(NAME))
-        joined = _Joined(bus, healths, beats, present, HealthReporter(NAME, bus, ResourceMeter()))
+        joined = _Joined(bus, healths, beats, present, HealthReporter(NAME, bus, ResourceMeter()), Speaker(BusError))
         with self._changes:
             if not stop.is_set():
                 self._joined = joined
                 return
+        joined.speaker.end()
         bus.close()

@@ -4,8 +4,9 @@ One box serves all runs and records them in one lesson; between two drills it ma
 socket gets. It is away when more than half of the joints have not been seen for longer than 0.5 s (the looping footage's seams take
 up to 0.4 s); `recovery_s` is from the fault until it is back for good, 0 if it never was away. `lost_s` is what the recording lacks
 of the time in which there was a figure, from the drill's first to its last instant. `said_s` is how soon the page's socket told of
-the fault, or was cut; `never_said` counts the runs in which it did neither. Of the last box's runs stands how much its memory grew
-from the first round to the last, and whatever it left behind.
+the fault, or was cut; `never_said` counts the runs in which it did neither. `failed` counts the runs in which what must follow did
+not within a minute: the others go on, and the box's log so far is kept beside the table. Of the last box's runs stands how much its
+memory grew from the first round to the last, and whatever it left behind.
 """
 
 import argparse
@@ -16,6 +17,7 @@ import threading
 import time
 from collections import defaultdict
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import psutil
@@ -38,20 +40,46 @@ NEVER_SAID = {"slow-tablet"}
 """Nothing is wrong then: that a tablet is slow is nobody's matter but its own."""
 
 
-def play(names: Sequence[str], runs: int, data: Path) -> tuple[list[Outcome], list[str], float]:
-    """All drills, so many times each; the outcomes, what was left behind, and the growth of memory in percent."""
+@dataclass
+class Played:
+    """What came of the drills.
+
+    Attributes:
+        rounds: the outcomes of each round, without those that failed.
+        failed: of each run that failed, its drill and what was waited for in vain.
+        left: what the box left behind.
+    """
+
+    rounds: list[list[Outcome]] = field(default_factory=list)
+    failed: list[tuple[str, str]] = field(default_factory=list)
+    left: list[str] = field(default_factory=list)
+
+    @property
+    def outcomes(self) -> list[Outcome]:
+        """Of all rounds."""
+        return [outcome for each in self.rounds for outcome in each]
+
+    @property
+    def growth_pct(self) -> float:
+        """Memory after the last round over that after the second: in the first the spares are still being made."""
+        rounds = [statistics.mean(outcome.rss_mb for outcome in each) for each in self.rounds if each]
+        return 100 * (rounds[-1] / rounds[1] - 1) if len(rounds) > 2 else float("nan")
+
+
+def play(names: Sequence[str], runs: int, data: Path) -> Played:
+    """All drills, so many times each."""
     with tempfile.TemporaryDirectory(prefix="drills-") as folder:
         before, processes = Before.look(), list[psutil.Process]()
         with running(Path(folder), data, ISOLATED + faults_of_site(), disk="full-disk" in names) as box:
-            outcomes = _play_in(box, names, runs, processes, Path(folder) / "lessons")
+            played = _play_in(box, names, runs, processes, Path(folder) / "lessons", data / "bench")
             processes += box.descendants()
-        left = left_behind(box, processes, before)
-    return outcomes, left, _growth_pct([outcome.rss_mb for outcome in outcomes], len(names))
+        played.left = left_behind(box, processes, before)
+    return played
 
 
-def _play_in(box: Box, names: Sequence[str], runs: int, processes: list[psutil.Process], shelf: Path) -> list[Outcome]:
+def _play_in(box: Box, names: Sequence[str], runs: int, processes: list[psutil.Process], shelf: Path, logs: Path) -> Played:
     """The drills of all runs; finished lessons are put on the shelf, so that a small disk is full only when it shall be."""
-    outcomes, watches = [], list[Span]()
+    played, watches = Played(), list[Span]()
     bus = open_client(box.endpoint, threading.Event())
     assert bus is not None
     with Client(box.port) as client:
@@ -59,6 +87,7 @@ def _play_in(box: Box, names: Sequence[str], runs: int, processes: list[psutil.P
         client.wait_figure(time.monotonic())
         stage.record("start")
         for run in range(runs):
+            played.rounds.append([])
             for name in names:
                 processes += box.descendants()
                 if name == "full-disk":  # which may cost the file that is being written
@@ -66,8 +95,14 @@ def _play_in(box: Box, names: Sequence[str], runs: int, processes: list[psutil.P
                     _shelve(box, shelf)
                     stage.record("start")
                 began_s = time.monotonic()
-                outcome = DRILLS[name](stage)
-                outcomes.append(outcome)
+                try:
+                    outcome = DRILLS[name](stage)
+                except AssertionError as error:
+                    played.failed.append((name, str(error)))
+                    kept = _keep_log(box, logs / f"faults-{run + 1}-{name}.log")
+                    print(f"{run + 1:3} {name:16} failed: {error}; the log until then: {kept}")
+                    continue
+                played.rounds[-1].append(outcome)
                 watches.append((began_s, time.monotonic()))
                 if not client.status()["recording"]:  # the disk was full, which ends a lesson
                     stage.record("start")
@@ -77,10 +112,16 @@ def _play_in(box: Box, names: Sequence[str], runs: int, processes: list[psutil.P
         _shelve(box, shelf)
     bus.close()
     ticks_s = _recorded_s(shelf)
-    for outcome, watch in zip(outcomes, watches, strict=True):
+    for outcome, watch in zip(played.outcomes, watches, strict=True):
         if outcome.drill != "full-disk":  # during which nothing can be kept
             outcome.lost_s = lost_s(ticks_s, client.seen.figures_s, *watch)
-    return outcomes
+    return played
+
+
+def _keep_log(box: Box, path: Path) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(b"".join(file.read_bytes() for file in sorted((box.data / "logs").glob("*.log"))))
+    return path
 
 
 def _shelve(box: Box, shelf: Path) -> None:
@@ -97,12 +138,6 @@ def _recorded_s(shelf: Path) -> list[float]:
         with open_lesson(path) as lesson:
             ticks_s += [entry.t_ns * 1e-9 for part in lesson.parts() for entry in part.entries if entry.kind == "tick"]
     return sorted(ticks_s)
-
-
-def _growth_pct(rss_mb: Sequence[float], drills: int) -> float:
-    """Memory after the last round over that after the second: in the first the spares are still being made."""
-    rounds = [statistics.mean(rss_mb[i : i + drills]) for i in range(0, len(rss_mb), drills)]
-    return 100 * (rounds[-1] / rounds[1] - 1) if len(rounds) > 2 else float("nan")
 
 
 def table(outcomes: Sequence[Outcome]) -> Table:
@@ -147,7 +182,8 @@ def main() -> None:
             if name in names and not allowed:
                 names.remove(name)
                 print(f"{name} is left out: it needs rights that this process has not")
-    outcomes, left, growth_pct = play(names, arguments.runs, arguments.data)
+    played = play(names, arguments.runs, arguments.data)
+    outcomes = played.outcomes
     report = Report("bench-faults")
     bars: dict[str, tuple[str, float]] = {}
     for name, runs in _by_drill(outcomes).items():
@@ -157,14 +193,16 @@ def main() -> None:
         report.add({f"{name}.lost_s.max": max((run.lost_s for run in runs if run.lost_s is not None), default=float("nan"))})
         report.add({f"{name}.said_s.max": max((run.said_s for run in runs if run.said_s is not None), default=float("nan"))})
         bars |= {f"{name}.recovery_s.max": ("<=", RECOVERY_BAR_S), f"{name}.lost_s.max": ("<=", LOST_BAR_S)}
+        report.add({f"{name}.failed": sum(drill == name for drill, _ in played.failed)})
+        bars[f"{name}.failed"] = ("<=", 0.0)
         if name not in NEVER_SAID:
             report.add({f"{name}.never_said": sum(run.said_s is None for run in runs)})
             bars |= {f"{name}.said_s.max": ("<=", RECOVERY_BAR_S), f"{name}.never_said": ("<=", 0.0)}
-    report.add({"rss_growth_pct": growth_pct, "left_behind": len(left), "runs": arguments.runs})
+    report.add({"rss_growth_pct": played.growth_pct, "left_behind": len(played.left), "runs": arguments.runs})
     report.rows = [vars(outcome) for outcome in outcomes]
     Console(width=110).print(table(outcomes))
     report.show(bars)
-    print("left behind: " + (", ".join(left) or "nothing"))
+    print("left behind: " + (", ".join(played.left) or "nothing"))
     print(f"written to {report.write(arguments.data)}")
 
 

@@ -317,7 +317,12 @@ def corrupt_bus(stage: Stage) -> Outcome:
         long_enough = time.monotonic() > fault_s + 3.0
         return long_enough and stage.client.status()["rejected_bus_messages"] > rejected_before
 
-    until(counted, "the page to count what it could not read", RECOVERS_WITHIN_S)
+    def uncounted() -> str:
+        now = stage.client.status()
+        counts = f"{rejected_before} before, {now['rejected_bus_messages']} now"
+        return f"the page to count what it could not read: {counts}, of {sorted(samples)}"
+
+    until(counted, uncounted, RECOVERS_WITHIN_S)
 
     def said(status: dict[str, Any]) -> bool:
         return any("could not be read" in each["reason"] for each in status["processes"])

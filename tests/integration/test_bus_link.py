@@ -130,7 +130,7 @@ class SilentRouter:
         assert self.closed.wait(DEADLINE_S), "the session that opened late stays open"
 
 
-def returns(call: Callable[[], None]) -> bool:
+def returns(call: Callable[[], object]) -> bool:
     """Whether a call returns, while what it may wait for does not come."""
     caller = threading.Thread(target=call, daemon=True)
     caller.start()
@@ -169,3 +169,37 @@ def test_the_supervisor_takes_the_place_of_a_router_that_never_answered_without_
     finally:
         router.goes_on.set()
         link.close()
+
+
+def test_a_session_that_holds_up_who_publishes_does_not_hold_up_the_supervisor(monkeypatch: pytest.MonkeyPatch) -> None:
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    router = zenoh_bus.open_router(endpoint)
+    router.declare_alive(topics.alive("fusion"))
+    said = router.subscribe(topics.health("supervisor"), keep=1)
+    truly, asked, goes_on = zenoh_bus.ZenohBus.publish, threading.Event(), threading.Event()
+
+    def publish(bus: Any, topic: str, payload: bytes) -> None:
+        if topic == topics.health("supervisor"):
+            asked.set()
+            goes_on.wait()
+        truly(bus, topic, payload)
+
+    monkeypatch.setattr(zenoh_bus.ZenohBus, "publish", publish)
+    link = BusLink(endpoint)
+    try:
+        until(lambda: "fusion" in link.present, "who is present to be known")
+
+        def speak() -> None:
+            link.say((), {}, None, OWN)
+
+        assert returns(speak), "say() waits for the session"
+        assert asked.wait(DEADLINE_S)
+        assert returns(speak), "say() waits for what was said before"
+        assert returns(link.heard)
+        assert said.receive(0.0) is None
+        goes_on.set()
+        until(lambda: said.receive(0.05) is not None, "what was held up")
+    finally:
+        goes_on.set()
+        link.close()
+        router.close()
