@@ -44,7 +44,7 @@ run: setup ## Start KineBox on the built-in lesson (SOURCE=footage or footage2: 
 test: setup $(FILMS) ## All tests but the four suites below: unit, property, golden, real sockets and processes, the page in Chromium
 	@$(MAKE) --no-print-directory lint
 	cd $(WEB) && npm run --silent check && npm test
-	$(PYTHON) -m pytest -n 3 --dist loadfile # many tests wait, for processes and deadlines
+	$(PYTHON) -m pytest -n 4 --dist loadfile # many tests wait, for processes and deadlines
 
 check: $(VENV)/.ready ## Formatting, types, import boundaries and the fast tests; under a minute
 	@$(MAKE) --no-print-directory lint
