@@ -67,18 +67,18 @@ def standing_values(figure: Figure) -> dict[str, Float]:
 
 
 def _corrected(figure: Figure, values: dict[str, Float]) -> tuple[float, float]:
-    """Where the footprints must be to lie under the weight, and the pelvis for knees that are just not straight."""
+    """Where the footprints must be to lie under the weight, and the pelvis for the shorter leg's knee to be just not straight."""
     batch = {name: value[None] for name, value in values.items()}
     local = posing.upper_body(figure, batch)
     posing.legs(figure, batch, batch["pelvis"], local)
     placed = figure.place_local(batch["pelvis"], local)
     weight = figure.centres_of_mass_m(placed)[0, 0]
-    back, up = figure.soles["left"].ankle_m(np.zeros(1))
-    forward = weight - _WEIGHT_BEHIND_BALL * back[0]
-    limb = limb_of(figure, "left", "leg")
-    hip = figure.bones_m[limb.root]
-    span = limb.span_m(np.radians(STRAIGHT_DEG[0]))
-    yaw = np.radians(TOES_OUT_DEG)
-    ankle = np.array((forward + back[0] * np.cos(yaw), hip[1] + back[0] * np.sin(yaw)))
-    rise = np.sqrt(span**2 - np.sum((ankle - hip[:2]) ** 2))
-    return float(forward), float(up[0] + rise - hip[2])
+    ankles = {side: figure.soles[side].ankle_m(np.zeros(1)) for side in posing.SIDES}
+    forward = weight - _WEIGHT_BEHIND_BALL * float(np.mean([back for back, _ in ankles.values()]))
+    heights = []
+    for side, (back, up) in ankles.items():
+        limb = limb_of(figure, side, "leg")
+        hip, yaw = figure.bones_m[limb.root], np.radians(posing.OUT[side][1] * TOES_OUT_DEG)
+        away = np.array((forward + back[0] * np.cos(yaw), hip[1] + back[0] * np.sin(yaw))) - hip[:2]
+        heights.append(up[0] + np.sqrt(limb.span_m(np.radians(STRAIGHT_DEG[0])) ** 2 - np.sum(away**2)) - hip[2])
+    return float(forward), float(min(heights))

@@ -14,7 +14,7 @@ from models.motions import palms, posing, rotations, splines
 from models.motions.actions.action import Action, Fault
 from models.motions.figure import Figure, figure_of
 from models.motions.inverse_kinematics import limb_of
-from models.motions.mirror import mirrored
+from models.motions.mirror import mirror_image, mirrored
 from models.motions.motion import CONTACTS, RATE_HZ, Attempt, Motion
 from models.motions.natural import Natural
 from models.motions.performance import Performance
@@ -96,6 +96,13 @@ class _Course:
 
 def perform(performance: Performance, subject: Subject) -> Motion:
     """See `models.motions.perform.perform`."""
+    if performance.handed == "right":
+        return mirrored(_left_first(performance, mirror_image(subject)))
+    return _left_first(performance, subject)
+
+
+def _left_first(performance: Performance, subject: Subject) -> Motion:
+    """To the left, with the left hand and foot first."""
     figure = figure_of(subject)
     course = _course(performance)
     values, contacts = _values(figure, course, performance)
@@ -123,8 +130,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
         "cartwheel", performance.handed, float(at_s[0]), float(at_s[_FIRST_HAND]), float(at_s[_UPSIDE_DOWN]), float(at_s[-1]),
         tuple(performance.faults.items()),
     )  # fmt: skip
-    motion = Motion(pelvis, rotations.vectors(local), contacts, (attempt,))
-    return motion if performance.handed == "left" else mirrored(motion)
+    return Motion(pelvis, rotations.vectors(local), contacts, (attempt,))
 
 
 def _placed(figure: Figure, values: dict[str, Float], hands: tuple[palms.Palm, ...], pelvis: Float, local: Float) -> Float:

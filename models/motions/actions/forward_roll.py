@@ -15,7 +15,7 @@ from models.motions import mat, palms, posing, rotations, splines
 from models.motions.actions.action import Action, Fault
 from models.motions.carrying import carried, over_foot, shares, smooth
 from models.motions.figure import Figure, figure_of
-from models.motions.mirror import mirrored
+from models.motions.mirror import mirror_image, mirrored
 from models.motions.motion import CONTACTS, RATE_HZ, Attempt, Motion
 from models.motions.natural import Natural
 from models.motions.performance import Performance
@@ -105,7 +105,14 @@ class _Way:
 
 
 def perform(performance: Performance, subject: Subject) -> Motion:
-    """One roll."""
+    """See `models.motions.perform.perform`."""
+    if performance.handed == "left":
+        return mirrored(_right_first(performance, mirror_image(subject)))
+    return _right_first(performance, subject)
+
+
+def _right_first(performance: Performance, subject: Subject) -> Motion:
+    """The right foot steps off the mat first."""
     figure = figure_of(subject)
     course = _course(performance, figure)
     values = _values(figure, course)
@@ -127,8 +134,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
         "forward_roll", performance.handed, float(at_s[0]), float(at_s[_PUSH]), float(at_s[_BACK]), float(at_s[-1]),
         tuple(performance.faults.items()),
     )  # fmt: skip
-    motion = Motion(pelvis[:end], rotations.vectors(local[:end]), contacts[:end], (attempt,))
-    return motion if performance.handed == "right" else mirrored(motion)
+    return Motion(pelvis[:end], rotations.vectors(local[:end]), contacts[:end], (attempt,))
 
 
 def _course(performance: Performance, figure: Figure) -> _Course:
