@@ -95,6 +95,7 @@ def test_what_is_shipped_is_small_and_has_a_plan_that_can_still_be_rendered() ->
     size = sum(path.stat().st_size for path in SOURCE.iterdir())
     assert size <= 10_000_000
     plan = read_plan(SOURCE, "cam01")
+    assert plan == PLAN, "the plan has changed since: python -m edge.simulation.shipped.ship"
     require_sound(plan, "shipped")
     assert tuple(cameras()) == rig_of(plan).names
 
