@@ -9,10 +9,12 @@ from hypothesis import strategies as st
 
 from models.body.pose import mirrored
 from models.body.prior import Sex
+from models.motions.actions.library import ACTIONS
 from models.motions.motion import Motion
 from models.motions.perform import perform
 from models.motions.performance import Performance
 from models.motions.subject import Subject
+from tests import gym_measures
 from tests.action_measures import MEASURES, Seen
 from tests.motion_laws import assert_lawful, measured
 from tests.pupils import performances, pupil, subjects
@@ -20,6 +22,11 @@ from tests.pupils import performances, pupil, subjects
 UPRIGHT = tuple(MEASURES)
 ONE_FAST = [pytest.param(action, marks=[pytest.mark.slow] * (action != "soccer_kick")) for action in UPRIGHT]
 MIRROR = np.array((1.0, -1.0, 1.0))
+
+
+def test_every_fault_of_every_action_has_a_measure_and_every_measure_a_fault() -> None:
+    measures = {action: set(of_faults) for action, of_faults in (*MEASURES.items(), *gym_measures.MEASURES.items())}
+    assert measures == {name: {fault.name for fault in action.faults} for name, action in ACTIONS.items()}
 
 
 @pytest.mark.parametrize("action", UPRIGHT)

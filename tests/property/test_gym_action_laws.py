@@ -12,7 +12,6 @@ from models.arrays import Float
 from models.body.pose import mirrored
 from models.body.prior import SEXES, Sex
 from models.motions import mat
-from models.motions.actions.library import ACTIONS
 from models.motions.figure import figure_of
 from models.motions.motion import CONTACTS, RATE_HZ, Motion
 from models.motions.perform import perform
@@ -217,11 +216,6 @@ def test_natural_variation_is_nearer_to_the_standard_than_to_any_fault(action: s
         standard, wrong = (measure(action, fault, subject, {fault: severity}) for severity in (0.0, 1.0))
         for seen in natural:
             assert of_motion(seen) < (standard + wrong) / 2, fault
-
-
-def test_every_fault_has_a_measure() -> None:
-    for action, measures in MEASURES.items():
-        assert {fault.name for fault in ACTIONS[action].faults} == set(measures)
 
 
 def measure(action: str, fault: str, subject: Subject, faults: Mapping[str, float]) -> float:
