@@ -27,7 +27,7 @@ CHOICE = ("fifths", 2)
 
 @cache
 def _twin() -> Twin:
-    return fit([stream for seed in range(5) for stream in streams_of(lesson_of(seed, 10.0), LAW)], choices=(CHOICE,))
+    return fit([stream for seed in range(6) for stream in streams_of(lesson_of(seed, 12.0), LAW)], choices=(CHOICE,))
 
 
 @cache
@@ -41,7 +41,7 @@ def _beside() -> tuple[Description, Description]:
     told: list[tuple[Context, Errors]] = []
     made: list[tuple[Context, Errors]] = []
     bootstrap = Bootstrap(_twin().library, _twin().settings, 1 / 15)
-    for seed in range(10, 14):
+    for seed in range(10, 18):
         for index, stream in enumerate(streams_of(lesson_of(seed, 10.0), LAW)):
             _, context = look(stream.truth)
             told += [(context, LAW.errors(context, np.random.default_rng((seed, index, again)))) for again in range(4)]
