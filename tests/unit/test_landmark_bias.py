@@ -14,8 +14,8 @@ from services.fusion.landmark_bias import THUNDER
 from services.fusion.landmarks import corrected
 from services.fusion.pipeline import initial_state, step
 from services.fusion.verdict import Pose
-from tests.bench.landmarks import PAIRS, Looks, all_biases, as_points, estimate_bias
 from tests.bench.networks.corrections import source_of
+from tests.bench.networks.landmarks import PAIRS, Looks, all_biases, as_points, estimate_bias
 from tests.synthetic.gym import Gym, ring_rig
 from tests.synthetic.person import Person
 

@@ -7,11 +7,12 @@ import pytest
 
 from models.arrays import Float
 from services.fusion.views import Views
-from tests.bench import shelf
-from tests.bench.openpose import JOINTS, LIMBS, Picture, group
-from tests.bench.shelf_data import PARTS, Shelf, as_shelf, load_shelf, right_parts
-from tests.bench.shelf_greedy import greedy_persons
-from tests.bench.shelf_run import PictureTracks, follow
+from tests.bench.shelf import __main__ as bench
+from tests.bench.shelf.data import PARTS, Shelf, as_shelf, load_shelf, right_parts
+from tests.bench.shelf.follow import PictureTracks, follow
+from tests.bench.shelf.greedy import greedy_persons
+from tests.bench.shelf.measure import measure
+from tests.bench.shelf.openpose import JOINTS, LIMBS, Picture, group
 from tests.installed import ROOT
 from tests.synthetic.gym import ring_rig
 from tests.synthetic.person import Person
@@ -121,7 +122,7 @@ def test_without_the_data_one_line_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("sys.argv", ["shelf", "--data", str(tmp_path), "--shared", str(tmp_path)])
-    assert shelf.main() == 2
+    assert bench.main() == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "shelf_dev" in line
     assert "SHARED=" in line
@@ -140,7 +141,7 @@ def shelf_data() -> Shelf:
 def test_on_the_shelf_limbs_are_right_and_nobody_is_mixed_up(shelf_data: Shelf) -> None:
     grouped = [[group(view) for view in pictures] for pictures in shelf_data.pictures]
     for cameras, least in (((0, 1, 2, 3, 4), 98.0), ((0, 2, 4), 96.5)):
-        figures = shelf.measure(shelf_data, grouped, cameras, "")
+        figures = measure(shelf_data, grouped, cameras, "")
         assert figures["pcp.limbs"] >= least
         assert figures["pcp.limbs"] > figures["baseline.pcp.limbs"]
         assert figures["identity_switches"] == 0

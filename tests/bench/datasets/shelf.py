@@ -35,7 +35,7 @@ class ShelfFilm:
     Attributes:
         rig: cameras "0" to "4".
         paths: of each camera, the pictures.
-        truth: of each frame, actor -> (15, 3) m, as `tests.bench.shelf_data` has it.
+        truth: of each frame, actor -> (15, 3) m, as `tests.bench.shelf.data` has it.
     """
 
     rig: Rig

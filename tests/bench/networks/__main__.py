@@ -5,8 +5,9 @@ body's height of the body's own COCO point, both at the body's distance; only jo
 attempts. Crops are told by the truth, with the margin that fusion's predictions have: upright, or (`.rotated`) turned with the
 trunk, as the box turns them. `within5_pct.thunder.upright` is over all visible joints of the eight upright actions.
 
-`bias_mm.<joint>`: length of the landmark bias, of Thunder in rotated crops over all actions (see `tests.bench.landmarks`); a joint
-stands for left and right. `--corrections` measures it on development pupils and writes `services/fusion/landmark_bias.py`.
+`bias_mm.<joint>`: length of the landmark bias, of Thunder in rotated crops over all actions (see
+`tests.bench.networks.landmarks`); a joint stands for left and right. `--corrections` measures it on development pupils and writes
+`services/fusion/landmark_bias.py`.
 """
 
 import argparse
@@ -18,9 +19,9 @@ from typing import Final
 from models.errors import UserError
 from models.motions.actions.library import ACTIONS
 from models.skeleton import coco
-from tests.bench.landmarks import AXES, Bias, all_biases
 from tests.bench.networks.corrections import write_corrections
 from tests.bench.networks.judge import UPRIGHT_ACTIONS, Errors, bias_looks, by_joint, errors, within5_pct
+from tests.bench.networks.landmarks import AXES, Bias, all_biases
 from tests.bench.networks.looks import NETWORKS, TURNS, Looked, Name, Turn
 from tests.bench.networks.plans import plan_of
 from tests.bench.networks.work import look_at_all

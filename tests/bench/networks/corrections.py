@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from models.skeleton import coco
-from tests.bench.landmarks import Bias, as_points
+from tests.bench.networks.landmarks import Bias, as_points
 
 PATH: Final = Path(__file__).parents[3] / "services/fusion/landmark_bias.py"
 _HEAD: Final = '''"""Where a pose network's points lie on the body, against the body's own COCO points: the landmark bias.

@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 
 from models.arrays import Bool, Float
-from tests.bench.landmarks import Looks
 from tests.bench.metrics.correctness import pck_pct
+from tests.bench.networks.landmarks import Looks
 from tests.bench.networks.looks import Looked, Name, Turn, errors_of_height
 from tests.bench.reconstruct.lesson import Lesson
 

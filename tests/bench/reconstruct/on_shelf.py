@@ -16,13 +16,13 @@ from edge.process import DETECTION_SCORE_MIN
 from edge.turns import default_control
 from models.messages.observation import Person
 from services.fusion.warm_up import warm_up
-from tests.bench import shelf as candidates
 from tests.bench.datasets import shelf
 from tests.bench.datasets.film import DecodedFrame
 from tests.bench.datasets.shelf import ShelfFilm
-from tests.bench.openpose import Grouped
 from tests.bench.report import Report
-from tests.bench.shelf_data import RATE_HZ, Shelf, load_shelf
+from tests.bench.shelf import measure as candidates
+from tests.bench.shelf.data import RATE_HZ, Shelf, load_shelf
+from tests.bench.shelf.openpose import Grouped
 
 PEOPLE_MAX: Final = 5
 """Four people are around the shelf; the box itself looks at no more than three in a search."""

@@ -1,17 +1,5 @@
-"""Everyone on the Shelf, frames 300-449: PCP-3D of our fusion and of a greedy baseline, on the same candidates in the same run.
+"""Figures of everyone on the Shelf: PCP-3D of our fusion and of a greedy baseline, on the same candidates."""
 
-Both are given the same grouping of OpenPose's candidates. What was chosen (the baseline's linkage distance, our sigma, the least
-affinity) was chosen on frames 300-374; frames 375-449 stand by themselves under `.held_out`. The second actor leaves in frame
-379. `live` is without any delay, the other figures of ours are with the smoother's five frames.
-
-No method that believes its pictures reaches 100: in frames 300-312 all five cameras agree on a right elbow of actor 2 that lies
-17-23 cm from the annotated one, which costs 21 of the 1824 limbs. So the largest margin over a baseline of 95.7 is 3.1 points.
-
-The data is not part of the repository (`../shared/data/shelf_dev`, or SHARED=folder): without it the exit code is 2.
-"""
-
-import argparse
-import sys
 import time
 from itertools import pairwise
 from pathlib import Path
@@ -19,14 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from models.arrays import Bool, Float
-from models.errors import UserError
 from services.fusion.views import Views
 from services.fusion.warm_up import warm_up
-from tests.bench.openpose import Grouped, group
 from tests.bench.report import Report
-from tests.bench.shelf_data import LIMB_PARTS, PARTS, Shelf, as_shelf, load_shelf, nearest_person, right_parts
-from tests.bench.shelf_greedy import greedy_persons
-from tests.bench.shelf_run import follow
+from tests.bench.shelf.data import LIMB_PARTS, PARTS, Shelf, as_shelf, nearest_person, right_parts
+from tests.bench.shelf.follow import follow
+from tests.bench.shelf.greedy import greedy_persons
+from tests.bench.shelf.openpose import Grouped, group
 
 ALL_CAMERAS, FEW_CAMERAS = (0, 1, 2, 3, 4), (0, 2, 4)
 HELD_OUT = slice(75, 150)
@@ -35,20 +22,6 @@ BARS = {
     "margin.cams024.limbs": (">=", 4.0),
 }
 Persons = list[dict[int, Float]]
-
-
-def main() -> int:
-    """Measure, print, write; returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--data", type=Path, required=True)
-    parser.add_argument("--shared", type=Path, default=Path("../shared/data"))
-    options = parser.parse_args()
-    try:
-        run(load_shelf(options.shared / "shelf_dev"), options.data)
-    except UserError as error:
-        sys.stderr.write(f"{error}\n")
-        return 2
-    return 0
 
 
 def run(shelf: Shelf, data: Path) -> None:
@@ -136,7 +109,3 @@ def parts(shelf: Shelf, grouped: list[list[list[Grouped]]]) -> dict[str, dict[st
 def percent(right: Bool) -> float:
     """Share in percent."""
     return float(100 * right.mean())
-
-
-if __name__ == "__main__":
-    sys.exit(main())

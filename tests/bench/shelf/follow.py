@@ -19,8 +19,8 @@ from services.fusion.person_estimates import PersonEstimates
 from services.fusion.persons import Persons
 from services.fusion.verdict import Pose
 from services.fusion.views import Sighting, Views
-from tests.bench.openpose import Grouped
-from tests.bench.shelf_data import RATE_HZ
+from tests.bench.shelf.data import RATE_HZ
+from tests.bench.shelf.openpose import Grouped
 
 LAG_FRAMES: Final = 5
 SIGMA_OF_SIZE: Final = 0.02

@@ -18,9 +18,8 @@ from models.camera.rig import Rig
 from models.errors import UserError
 from models.skeleton import coco
 from tests.bench.metrics.correctness import right_parts as right_parts_of
-from tests.bench.openpose import Picture
+from tests.bench.shelf.openpose import Picture
 
-FIRST_IMAGE: Final = 300
 RATE_HZ: Final = 25.0
 PARTS: Final = {
     "right_shank": (0, 1),

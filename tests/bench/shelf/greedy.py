@@ -12,7 +12,7 @@ import numpy as np
 from models.arrays import Float
 from models.skeleton import coco
 from services.fusion.views import Views
-from tests.bench.openpose import Grouped
+from tests.bench.shelf.openpose import Grouped
 
 LINK_M: Final = 0.2
 """Persons further apart are not joined; from 0.10 to 0.50 PCP on frames 300-374 is the same within 0.1."""
