@@ -140,13 +140,13 @@ build/peers/%/.ready: tests/bench/peers/%/requirements.lock | $(VENV)/.ready
 	@touch $@
 
 bench-footage: setup $(FILM_OF_footage) build/peers/pose2sim/.ready ## Accuracy on the built-in footage, beside Pose2Sim on the same keypoints
-	$(PYTHON) -m tests.bench.footage --data $(DATA)
+	$(PYTHON) -m tests.bench.footage.one_person --data $(DATA)
 
 bench-peers: setup $(FILM_OF_footage) build/peers/pose2sim/.ready build/peers/aniposelib/.ready ## Pose2Sim and aniposelib beside our fusion, on the same keypoints
 	$(PYTHON) -m tests.bench.peers --data $(DATA)
 
 bench-footage2: setup $(FILM_OF_footage2) ## The pupil among two people, on the second built-in footage
-	$(PYTHON) -m tests.bench.footage2 --data $(DATA)
+	$(PYTHON) -m tests.bench.footage.two_people --data $(DATA)
 
 bench-reconstruct: $(VENV)/.ready networks kernels build/peers/pose2sim/.ready build/peers/aniposelib/.ready ## Rendered lessons through the whole box, against their truth (ARGS=--full; or DATASET=h36m|panoptic|shelf PATH=folder)
 	$(PYTHON) -m tests.bench.reconstruct --data $(DATA) $(if $(DATASET),--dataset $(DATASET) --path "$(DATASET_PATH)") $(ARGS)

@@ -34,5 +34,5 @@ class Footage:
 ONE_PERSON: Final = Footage("footage", "Pose2Sim/Demo_SinglePerson", fitted=True)
 TWO_PEOPLE: Final = Footage("footage2", "Pose2Sim/Demo_MultiPerson", fitted=False)
 """The same man and scene with a second person rendered into all four views; its pictures were moved and scaled a little once
-more, which `tests/bench/footage2_rig.py` puts into the calibration."""
+more, which `tests/bench/footage/two_people_rig.py` puts into the calibration."""
 FOOTAGES: Final = {footage.name: footage for footage in (ONE_PERSON, TWO_PEOPLE)}

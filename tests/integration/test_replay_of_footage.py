@@ -16,7 +16,9 @@ from services.fusion.pipeline import initial_state, step
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_reader import open_lesson
 from services.lesson.replay import compare, configuration, replay
-from tests.bench.footage_run import CONFIG, START_NS, load_videos, look
+from tests.bench.footage.run import load_videos, look
+from tests.bench.reconstruct.lesson import START_NS
+from tests.bench.reconstruct.observed import CONFIG
 from tests.installed import ROOT, require_footage, require_networks
 from tests.synthetic.gym import Gym
 from tests.synthetic.gym_lesson import gym_header

@@ -5,13 +5,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from msgspec import structs
 
 from edge.observe import PersonDetector
 from models.arrays import Float
 from models.messages.observation import Observation
 from models.skeleton import coco
-from tests.bench.footage_run import frame_by_frame
+from tests.bench.closed_loop import Event
 from tests.bench.reconstruct import observed as observed_module
+from tests.bench.reconstruct.each_frame import frame_by_frame, looks_at_pupil
 from tests.bench.reconstruct.figures import bound_mm, jitter_reduction_pct, judge, mean_over, noise_px, of_action
 from tests.bench.reconstruct.fused import Fused, fuse
 from tests.bench.reconstruct.keypoints import Seen, by_frame, interpolated, pupil_seen
@@ -66,7 +68,7 @@ def test_the_joints_of_visible_dots_are_within_millimetres_and_every_action_is_j
     assert abs(figures["peak_speed_bias_pct"]) < 30
 
 
-def test_the_live_pose_is_two_frames_younger_and_worse_than_the_smooth_one(lesson: Lesson, fused: Fused) -> None:
+def test_the_smooth_pose_is_nearer_to_the_truth_than_the_live_one(lesson: Lesson, fused: Fused) -> None:
     smooth, live = (
         of_action(judge(lesson.spans, fused.times_s, joints, lesson.truth_m)) for joints in (fused.smooth_m, fused.live_m)
     )
@@ -93,11 +95,26 @@ def test_differences_are_never_taken_from_one_attempt_to_the_next() -> None:
 
 
 def test_each_frame_alone_jitters_more_than_the_smooth_motion(lesson: Lesson, every_frame: Observed, fused: Fused) -> None:
-    alone = frame_by_frame(lesson.rig, every_frame.events, len(fused.times_s))
+    looks = looks_at_pupil(lesson.rig, every_frame.events, lesson.truth_m(fused.times_s))
+    alone = frame_by_frame(lesson.rig, looks, len(fused.times_s))
     noisy = alone + np.random.default_rng(0).normal(scale=0.01, size=alone.shape)
     smooth, raw = (judge(lesson.spans, fused.times_s, joints, lesson.truth_m) for joints in (fused.smooth_m, noisy))
     assert jitter_reduction_pct(smooth, raw) > 50
     assert jitter_reduction_pct(raw, raw) == 0.0
+
+
+def test_each_frame_alone_is_of_the_pupil_though_a_camera_is_surer_of_somebody_else(lesson: Lesson, every_frame: Observed) -> None:
+    near_m = lesson.truth_m(np.arange(60) / 30)
+    pupil = looks_at_pupil(lesson.rig, every_frame.events, near_m)
+    others: list[Event] = []
+    for one in pupil:
+        (own,) = one.persons
+        false = structs.replace(own, keypoints_px=own.keypoints_px + np.float32(150), score=np.ones(coco.COUNT, np.float32))
+        others.append(structs.replace(one, persons=(false, own)) if one.camera in lesson.rig.names[:2] else one)
+    alone = frame_by_frame(lesson.rig, pupil, 60)
+    assert np.isfinite(alone).all(axis=2).mean() > 0.8
+    assert float(np.nanmedian(np.linalg.norm(alone - near_m, axis=-1))) < 0.02
+    np.testing.assert_array_equal(frame_by_frame(lesson.rig, looks_at_pupil(lesson.rig, others, near_m), 60), alone)
 
 
 def test_the_bound_follows_from_the_noise_that_was_measured(lesson: Lesson, seen: list[Seen], fused: Fused) -> None:

@@ -20,8 +20,8 @@ from rich.table import Table
 from models.arrays import Float
 from models.camera.rig import decode_rig
 from models.skeleton import coco
-from tests.bench.footage import FULL_WIDTH_PX, MIN_SCORE, RIG, TESTED, for_peers
-from tests.bench.footage_run import FLUSH_FRAMES, RATE_HZ, load_videos, look, pupil_keypoints, reconstruct
+from tests.bench.footage.one_person import FULL_WIDTH_PX, MIN_SCORE, RIG, TESTED, for_peers
+from tests.bench.footage.run import load_videos, look, pupil_keypoints
 from tests.bench.metrics.limbs import limb_variation_pct
 from tests.bench.metrics.reprojection import reprojection_px
 from tests.bench.peers import aniposelib_group, ours, pose2sim_project
@@ -29,6 +29,8 @@ from tests.bench.peers.answer import Answer
 from tests.bench.peers.ask import ask_peers, margins_pct
 from tests.bench.peers.clips import MOTIONS, Clip, make_clip
 from tests.bench.peers.score import Score, score_all
+from tests.bench.reconstruct.fused import fuse
+from tests.bench.reconstruct.observed import FLUSH_TICKS, RATE_HZ
 from tests.bench.report import Report
 
 SEEDS = range(5)
@@ -134,12 +136,12 @@ def on_footage(data: Path) -> dict[str, dict[str, float]]:
     scale = FULL_WIDTH_PX / rig.cameras[0].size_px[0]
     frames = len(videos[0].pictures)
     events = look(rig, videos, data, RATE_HZ)
-    own = reconstruct(rig, events, frames)
+    own = fuse(rig, events, frames / RATE_HZ)
     points, scores = keypoints = pupil_keypoints(rig, events, own.smooth_m)
     joints = {"ours.smooth": own.smooth_m, "ours.live": own.live_m}
     cpu_ms: dict[str, list[float]] = {method: [] for method in SETTINGS}
     for _ in range(TURNS):
-        spent_ms = 1e3 * reconstruct(rig, events, frames).cpu_s / (frames + FLUSH_FRAMES)
+        spent_ms = 1e3 * fuse(rig, events, frames / RATE_HZ).cpu_s / (frames + FLUSH_TICKS)
         for method in joints:
             cpu_ms[method] += [spent_ms] if _is_ours(method) else []
         for ((*answers,),) in ask_peers([for_peers(rig, keypoints, scale)]):

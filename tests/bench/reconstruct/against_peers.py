@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from models.arrays import Float
-from tests.bench.footage import for_peers
+from tests.bench.footage.one_person import for_peers
 from tests.bench.kept import keep_arrays
 from tests.bench.peers.answer import Answer
 from tests.bench.peers.ask import PEERS, ask_peers, best_setting, margins_pct

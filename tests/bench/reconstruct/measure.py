@@ -9,8 +9,8 @@ import numpy as np
 from models.arrays import Float
 from models.camera.rig import Rig
 from services.fusion.config import FusionConfig
-from tests.bench.footage_run import frame_by_frame
 from tests.bench.metrics.position import position_error
+from tests.bench.reconstruct.each_frame import frame_by_frame, looks_at_pupil
 from tests.bench.reconstruct.figures import Judged, bound_mm, jitter_reduction_pct, judge, of_action, reprojection_rmse_px
 from tests.bench.reconstruct.fused import Fused, fuse
 from tests.bench.reconstruct.keypoints import Seen, by_frame, interpolated, pupil_seen
@@ -138,9 +138,10 @@ def _without_pose(judged: list[Judged]) -> dict[str, list[float]]:
 def _against_each_frame(
     rig: Rig, seen: Observed, fused: Fused, looks: list[Seen], lesson: Lesson, upright: tuple[str, ...]
 ) -> dict[str, float]:
-    """Jitter against the fit of each frame alone, and the bound, over the upright actions."""
+    """Jitter against the fit of each frame alone, of the same person, and the bound, over the upright actions."""
     spans = [span for span in lesson.spans if span.action in upright]
-    alone = frame_by_frame(rig, seen.events, len(fused.times_s))
+    of_pupil = looks_at_pupil(rig, seen.events, lesson.truth_m(fused.times_s))
+    alone = frame_by_frame(rig, of_pupil, len(fused.times_s))
     smooth, raw = (judge(spans, fused.times_s, joints, lesson.truth_m) for joints in (fused.smooth_m, alone))
     if not smooth:
         return {}

@@ -23,22 +23,15 @@ from models.skeleton import coco
 from services.calibration.shift import solve_shifts
 from tests.bench.boxes import inside
 from tests.bench.closed_loop import Event
-from tests.bench.footage_run import (
-    CONFIG,
-    FLUSH_FRAMES,
-    RATE_HZ,
-    Reconstruction,
-    frame_by_frame,
-    load_videos,
-    look,
-    pupil_keypoints,
-    reconstruct,
-)
+from tests.bench.footage.run import load_videos, look, pupil_keypoints
 from tests.bench.metrics.limbs import limb_variation_pct
 from tests.bench.metrics.reprojection import reprojection_px
 from tests.bench.metrics.steadiness import peak_speed_m_s
 from tests.bench.peers.answer import Answer, Keypoints
 from tests.bench.peers.pose2sim_project import run_pose2sim
+from tests.bench.reconstruct.each_frame import frame_by_frame, looks_at_pupil
+from tests.bench.reconstruct.fused import Fused, fuse
+from tests.bench.reconstruct.observed import CONFIG, FLUSH_TICKS, RATE_HZ
 from tests.bench.report import Report
 
 RIG = Path("deploy/sites/footage/rig.toml")
@@ -81,20 +74,20 @@ def main() -> None:
     for camera in rig:
         report.rows.append({"camera": camera.name, "shift_px": (camera.shift_px * scale).round(2).tolist()})
 
-    ours = reconstruct(rig, events, frames)
+    ours = fuse(rig, events, frames / RATE_HZ)
     keypoints = pupil_keypoints(rig, events, ours.smooth_m)
     report.add(accuracy(rig, ours, keypoints, scale))
     report.add(steadiness(rig, ours, events))
     report.add({"bystander_inliers": bystander_inliers(rig, ours, keypoints[0], tomllib.loads(PEOPLE.read_text())["picture"])})
-    without = reconstruct(unshifted, events, frames)
+    without = fuse(unshifted, events, frames / RATE_HZ)
     report.add(suffixed(accuracy(unshifted, without, pupil_keypoints(unshifted, events, without.smooth_m), scale), ".noshift"))
 
     free = replace(CONFIG, smoothing=replace(CONFIG.smoothing, limb_sigma=float("inf")))
-    unbound = reconstruct(rig, events, frames, free)
+    unbound = fuse(rig, events, frames / RATE_HZ, free)
     report.add(suffixed(accuracy(rig, unbound, keypoints, scale), ".without_limb_term"))
 
     slower = look(rig, videos, data, 10.0)
-    sparse = reconstruct(rig, slower, frames)
+    sparse = fuse(rig, slower, frames / RATE_HZ)
     report.add(suffixed(accuracy(rig, sparse, keypoints, scale), ".live_rate"))
     report.add({"frames_without_pose.live_rate": frames_without_pose(sparse)})
 
@@ -102,7 +95,7 @@ def main() -> None:
     peers, own_s = [], []
     for _ in range(REPEATS):
         peers.append(pose2sim(rig, keypoints, scale))
-        own_s += [reconstruct(rig, events, frames).cpu_s for _ in range(PASSES)]
+        own_s += [fuse(rig, events, frames / RATE_HZ).cpu_s for _ in range(PASSES)]
     report.add(limbs_beside(ours, peers[0]))
     report.add(speeds(statistics.median(own_s), statistics.median(peer.cpu_ms for peer in peers), frames))
     report.show(BARS)
@@ -111,12 +104,12 @@ def main() -> None:
 
 def solve(rig: Rig, events: list[Event], frames: int) -> Float:
     """(cameras, 2) shifts from the fitted frames alone."""
-    rough = reconstruct(rig, events, frames)
+    rough = fuse(rig, events, frames / RATE_HZ)
     points, scores = pupil_keypoints(rig, events, rough.smooth_m)
     return solve_shifts(rig, points[FITTED], np.nan_to_num(scores[FITTED]))
 
 
-def accuracy(rig: Rig, found: Reconstruction, keypoints: tuple[Float, Float], scale: float) -> dict[str, float]:
+def accuracy(rig: Rig, found: Fused, keypoints: tuple[Float, Float], scale: float) -> dict[str, float]:
     """Reprojection, views and limbs over the tested frames; keypoints of every frame."""
     points, scores = keypoints
     distance = reprojection_px(rig, found.smooth_m[TESTED], points[TESTED], scores[TESTED], min_score=MIN_SCORE) * scale
@@ -133,9 +126,9 @@ def accuracy(rig: Rig, found: Reconstruction, keypoints: tuple[Float, Float], sc
     }
 
 
-def steadiness(rig: Rig, found: Reconstruction, events: list[Event]) -> dict[str, float]:
+def steadiness(rig: Rig, found: Fused, events: list[Event]) -> dict[str, float]:
     """What smoothing does to the fastest movement of the wrists, and frames without a pose."""
-    alone = frame_by_frame(rig, events, len(found.smooth_m))
+    alone = frame_by_frame(rig, looks_at_pupil(rig, events, found.smooth_m), len(found.smooth_m))
     changes = []
     for wrist in ("left_wrist", "right_wrist"):
         joint = coco.INDEX[wrist]
@@ -147,14 +140,14 @@ def steadiness(rig: Rig, found: Reconstruction, events: list[Event]) -> dict[str
     }
 
 
-def frames_without_pose(found: Reconstruction) -> float:
+def frames_without_pose(found: Fused) -> float:
     """Frames after the first ten in which the live or the smooth motion has fewer than nine joints seen by two views."""
     live = (found.live_states[FIRST_JUDGED:] == JointState.SEEN).sum(axis=1)
     smooth = (found.smooth_states[FIRST_JUDGED:] == JointState.SEEN).sum(axis=1)
     return float((np.minimum(live, smooth) < MIN_JOINTS).sum())
 
 
-def bystander_inliers(rig: Rig, found: Reconstruction, points_px: Float, pictures: list[dict[str, Any]]) -> float:
+def bystander_inliers(rig: Rig, found: Fused, points_px: Float, pictures: list[dict[str, Any]]) -> float:
     """Keypoints that were fused and lie in a hand-drawn box of somebody else, and not in the pupil's."""
     count = 0
     for picture in pictures:
@@ -181,7 +174,7 @@ def pose2sim(rig: Rig, keypoints: tuple[Float, Float], scale: float) -> Answer:
     return filtered
 
 
-def limbs_beside(ours: Reconstruction, theirs: Answer) -> dict[str, float]:
+def limbs_beside(ours: Fused, theirs: Answer) -> dict[str, float]:
     """Pose2Sim's limbs, and how many of ours vary more."""
     limbs, peer = limb_variation_pct(ours.smooth_m[TESTED]), limb_variation_pct(theirs.joints_m[TESTED])
     return {
@@ -195,7 +188,7 @@ def limbs_beside(ours: Reconstruction, theirs: Answer) -> dict[str, float]:
 def speeds(own_s: float, peer_ms: float, frames: int) -> dict[str, float]:
     """CPU from keypoints to smooth joints: ours (association, filters, live and smooth output) and Pose2Sim's three stages."""
     return {
-        "fusion_cpu_ms_per_frame": 1e3 * own_s / (frames + FLUSH_FRAMES),
+        "fusion_cpu_ms_per_frame": 1e3 * own_s / (frames + FLUSH_TICKS),
         "pose2sim.cpu_ms_per_frame": peer_ms,
         "speedup.pose2sim": peer_ms * frames / (1e3 * own_s),
     }

@@ -1,4 +1,4 @@
-"""Writes the calibration of the second built-in footage anew: `python -m tests.bench.footage2_rig --data build`.
+"""Writes the calibration of the second built-in footage anew: `python -m tests.bench.footage.two_people_rig --data build`.
 
 The second person was rendered into the first footage's views, which were moved and scaled by up to 0.8 % on the way. How is known
 from matching ORB features of both footages (2,000 matches a view, RANSAC at 2 px, the same on pictures 0, 50 and 90):
@@ -18,8 +18,10 @@ from edge.footage.transcode import SIZE_PX
 from models.camera.pinhole import Camera
 from models.camera.rig import Rig
 from services.calibration.resolution import resized
-from tests.bench.footage_rig import calibrated_rig, write_shifted
-from tests.bench.footage_run import RATE_HZ, load_videos, look, pupil_keypoints, reconstruct
+from tests.bench.footage.one_person_rig import calibrated_rig, write_shifted
+from tests.bench.footage.run import load_videos, look, pupil_keypoints
+from tests.bench.reconstruct.fused import fuse
+from tests.bench.reconstruct.observed import RATE_HZ
 
 PUBLISHED = {
     "cam01": (0.9963, 0.5, 0.0),
@@ -48,7 +50,7 @@ def main() -> None:
     rig = Rig(tuple(resized(as_published(camera), SIZE_PX) for camera in calibrated_rig(data, TWO_PEOPLE)))
     videos = load_videos(rig, data, TWO_PEOPLE)
     events = look(rig, videos, data, RATE_HZ)
-    found = reconstruct(rig, events, len(videos[0].pictures))
+    found = fuse(rig, events, len(videos[0].pictures) / RATE_HZ)
     points, scores = pupil_keypoints(rig, events, found.smooth_m)
     write_shifted(rig, points, np.nan_to_num(scores), TWO_PEOPLE, Path(__file__).name)
 

@@ -1,4 +1,4 @@
-"""Writes the calibration of the built-in footage anew: `python -m tests.bench.footage_rig --data build`.
+"""Writes the calibration of the built-in footage anew: `python -m tests.bench.footage.one_person_rig --data build`.
 
 Converts the calibration to the prepared resolution and solves one 2D shift a camera on pictures 0-49 from Thunder's keypoints
 of the pupil. Prints the residuals with and without the shifts on pictures 50-99, which the solution has not seen.
@@ -24,7 +24,7 @@ from services.calibration.qualisys import decode_qualisys
 from services.calibration.resolution import resized
 from services.calibration.shift import residuals_px, solve_shifts
 
-SITES = Path(__file__).parents[2] / "deploy/sites"
+SITES = Path(__file__).parents[3] / "deploy/sites"
 SOLVED_ON = slice(0, 50)
 REPORTED_ON = slice(50, 100)
 CALIBRATED_WIDTH_PX = 1088
@@ -69,7 +69,7 @@ def write_shifted(rig: Rig, points: Float, scores: Float, footage: Footage, tool
         residuals = residuals_px(used, points[REPORTED_ON], scores[REPORTED_ON]) * to_full
         per_camera = ", ".join(f"{np.nanmedian(residuals[:, i]):.1f}" for i in range(len(rig)))
         print(f"{name}: median {np.nanmedian(residuals):.1f} px of {CALIBRATED_WIDTH_PX} (cameras {per_camera})")
-    converted = f"converted to {SIZE_PX[0]}x{SIZE_PX[1]} px by tests/bench/{tool}"
+    converted = f"converted to {SIZE_PX[0]}x{SIZE_PX[1]} px by tests/bench/footage/{tool}"
     source = f"{CALIBRATION} of {PACKAGE} {VERSION} (BSD-3-Clause), {converted}"
     (SITES / footage.name / "rig.toml").write_bytes(encode_rig(rig.with_shifts(shifts), source))
 

@@ -19,9 +19,11 @@ from models.arrays import Float
 from models.camera.rig import Rig, decode_rig
 from models.skeleton import coco
 from tests.bench.boxes import inside
-from tests.bench.footage import FULL_WIDTH_PX, MIN_SCORE, TESTED, accuracy, frames_without_pose, suffixed
-from tests.bench.footage_run import RATE_HZ, Reconstruction, load_videos, look, pupil_keypoints, reconstruct
+from tests.bench.footage.one_person import FULL_WIDTH_PX, MIN_SCORE, TESTED, accuracy, frames_without_pose, suffixed
+from tests.bench.footage.run import load_videos, look, pupil_keypoints
 from tests.bench.metrics.reprojection import reprojection_px
+from tests.bench.reconstruct.fused import Fused, fuse
+from tests.bench.reconstruct.observed import RATE_HZ
 from tests.bench.report import Report
 
 RIG = Path("deploy/sites/footage2/rig.toml")
@@ -52,7 +54,7 @@ def main() -> None:
     scale = FULL_WIDTH_PX / rig.cameras[0].size_px[0]
     for rate_hz, suffix in ((RATE_HZ, ""), (LIVE_RATE_HZ, ".live_rate")):
         events = look(rig, videos, data, rate_hz)
-        found = reconstruct(rig, events, frames)
+        found = fuse(rig, events, frames / RATE_HZ)
         points, scores = pupil_keypoints(rig, events, found.smooth_m)
         distance = reprojection_px(rig, found.smooth_m[TESTED], points[TESTED], scores[TESTED], min_score=MIN_SCORE) * scale
         figures = {
@@ -75,7 +77,7 @@ def drawn(path: Path) -> list[dict[str, Any]]:
     return pictures
 
 
-def wrong_person_inliers(rig: Rig, found: Reconstruction, points_px: Float, pictures: list[dict[str, Any]]) -> int:
+def wrong_person_inliers(rig: Rig, found: Fused, points_px: Float, pictures: list[dict[str, Any]]) -> int:
     """Keypoints that were fused and lie in the box of somebody else, and not in the pupil's.
 
     A motion names the views that agreed a short while around it, so a keypoint of just this picture counts only near its joint.
@@ -103,7 +105,7 @@ def on_pupil(rig: Rig, joints_m: Float, picture: dict[str, Any]) -> float:
     return pupil / (pupil + second) if pupil + second else 0.5 * float(own.any())
 
 
-def identity_switches(rig: Rig, found: Reconstruction, pictures: list[dict[str, Any]]) -> int:
+def identity_switches(rig: Rig, found: Fused, pictures: list[dict[str, Any]]) -> int:
     """How often, from one drawn frame to the next, the figure changes over from one person to the other."""
     frames = sorted({picture["frame"] for picture in pictures})
     sides = []
