@@ -32,6 +32,8 @@ def do(piece, step_done):
         raise UserError("piece 66 cannot be made; do without it")
     if piece == 77:
         os._exit(9)
+    if piece == 78:
+        os.kill(os.getpid(), 9)
     if piece == 88:
         raise ArithmeticError("a defect of ours")
     if piece == 99:
@@ -61,6 +63,7 @@ def test_every_piece_is_done_once_and_every_step_is_told(tmp_path: Path) -> None
     [
         (66, UserError, "^piece 66 cannot be made; do without it$"),
         (77, RuntimeError, "code 9"),
+        (78, UserError, r"^a process at work was ended \(SIGKILL\).* memory is full: .* the same command goes on"),
         (88, RuntimeError, "ArithmeticError: a defect of ours"),
     ],
 )

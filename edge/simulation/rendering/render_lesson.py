@@ -11,16 +11,16 @@ import errno
 import shutil
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
 import msgspec
 
-from edge.footage.index import Index
+from edge.footage.index import INDEX_NAME, Index
 from edge.simulation.lesson.attempts import encode_attempts
-from edge.simulation.lesson.files import ATTEMPTS_NAME, FOLDER, PLAN_NAME, RIG_NAME, SITE_NAME
+from edge.simulation.lesson.files import ATTEMPTS_NAME, FOLDER, PLAN_NAME, RIG_NAME, SITE_NAME, TRUTH_NAME
 from edge.simulation.lesson.plan import Plan, encode_plan, fingerprint
 from edge.simulation.lesson.site_of_lesson import site_of
 from edge.simulation.lesson.stage import set_stage
@@ -38,6 +38,8 @@ PIECE_S = 0.5
 JPEG_QUALITY = 80
 _SPARE_BYTES = 20_000_000
 _DIGITS = 12
+_NAMES = {PLAN_NAME, RIG_NAME, SITE_NAME, ATTEMPTS_NAME, TRUTH_NAME, INDEX_NAME, JOB_NAME}
+_SUFFIXES = {".avi", ".pictures", ".truth", PART_SUFFIX}
 
 
 class Look(NamedTuple):
@@ -70,26 +72,36 @@ def render_lesson(plan: Plan, folder: Path, progress: Progress, look: Look = AS_
     Raises:
         UserError: the folder cannot be written, its disk is full, or this machine cannot render.
     """
+    folder = folder.resolve()  # `.` and `..` have no name, and a link is not what it leads to.
     wanted = _fingerprint(plan, look)
     if is_rendered(folder, wanted):
         return False
-    _require_replaceable(folder)
-    part = folder.with_name(f"{folder.name}{PART_SUFFIX}")
-    with _disk_errors(part), alone_in(part):
-        if is_rendered(folder, wanted):  # Somebody else was faster.
-            return False
-        graphics()  # Who cannot render shall hear it at once.
-        job = _begin(part, plan, wanted, look, folder)
-        _render_pieces(part, job, progress)
+    part = folder.parent / f"{folder.name}{PART_SUFFIX}"
+    with _disk_errors(part):
+        _require_replaceable(folder, part)
+        with alone_in(part), _nothing_empty(part):
+            if is_rendered(folder, wanted):  # Somebody else was faster.
+                return False
+            if not is_rendered(part, wanted):  # It is if whoever rendered it was killed at the very end.
+                _render(part, plan, wanted, look, folder, progress)
+            (part / JOB_NAME).unlink(missing_ok=True)
+            _remove(folder)
+            part.rename(folder)
+    return True
+
+
+def _render(part: Path, plan: Plan, wanted: str, look: Look, folder: Path, progress: Progress) -> None:
+    """Put everything into the folder, its index last."""
+    graphics()  # Who cannot render shall hear it at once.
+    job = _begin(part, plan, wanted, look, folder)
+    _render_pieces(part, job, progress)
+    try:
         films = [join_film(part, job, camera) for camera in job.cameras]
         truth = join_truth(part, job)
-        (part / JOB_NAME).unlink()
-        names = (PLAN_NAME, RIG_NAME, SITE_NAME, ATTEMPTS_NAME)
-        Index.of(wanted, [*(part / name for name in names), truth, *films]).write(part)
-        if folder.exists():
-            shutil.rmtree(folder)
-        part.rename(folder)
-    return True
+    except (msgspec.DecodeError, UserError) as error:  # The power was cut while they were written.
+        raise UserError(f"{part}: what was rendered is damaged ({error}); delete that folder and begin again") from error
+    names = (PLAN_NAME, RIG_NAME, SITE_NAME, ATTEMPTS_NAME)
+    Index.of(wanted, [*(part / name for name in names), truth, *films]).write(part)
 
 
 def is_rendered(folder: Path, wanted: str) -> bool:
@@ -102,14 +114,47 @@ def _fingerprint(plan: Plan, look: Look) -> str:
     return fingerprint(plan, f"{recipe()} {look}")
 
 
-def _require_replaceable(folder: Path) -> None:
-    if folder.exists() and not (folder / PLAN_NAME).is_file() and (not folder.is_dir() or any(folder.iterdir())):
-        raise UserError(f"{folder} is there already and is no rendered lesson; name another folder with --out")
+def _require_replaceable(folder: Path, part: Path) -> None:
+    """Only what a rendering has put there may be removed."""
+    if folder.exists():
+        index = Index.read(folder)
+        is_lesson = index is not None and PLAN_NAME in index.files
+        if not folder.is_dir() or (not is_lesson and any(folder.iterdir())):
+            raise UserError(f"{folder} is there already and is no rendered lesson; name another folder with --out, or delete it")
+        if index is not None:
+            _require_only(folder, lambda name: name in {INDEX_NAME, JOB_NAME, *index.files})
+    if part.is_dir():
+        _require_only(part, lambda name: name in _NAMES or Path(name).suffix in _SUFFIXES)
+
+
+def _require_only(folder: Path, is_ours: Callable[[str], bool]) -> None:
+    for path in sorted(folder.iterdir()):
+        if not is_ours(path.name):
+            raise UserError(f"{path} would be lost, which is of no rendering; move it away, or name another folder with --out")
+
+
+def _remove(folder: Path) -> None:
+    """Remove an older lesson, its index last: whoever is killed meanwhile can go on."""
+    if folder.exists():
+        for path in sorted(folder.iterdir(), key=lambda path: path.name == INDEX_NAME):
+            path.unlink()
+        folder.rmdir()
+
+
+@contextmanager
+def _nothing_empty(part: Path) -> Iterator[None]:
+    """Whoever fails before anything is rendered leaves nothing."""
+    try:
+        yield
+    finally:
+        with contextlib.suppress(OSError):  # There is something in it, or it has its name.
+            part.rmdir()
 
 
 def _begin(part: Path, plan: Plan, wanted: str, look: Look, folder: Path) -> Job:
     """Make the folder ready: what another plan or recipe has left in it is removed. The stage is gone when this returns."""
     stage = set_stage(plan)
+    _require_within(plan, stage.length_s)
     job = Job(
         fingerprint=wanted,
         noisy=look.noisy,
@@ -134,6 +179,17 @@ def _begin(part: Path, plan: Plan, wanted: str, look: Look, folder: Path) -> Job
     write_whole(part / SITE_NAME, site_of(f"Simulated lesson {plan.name}", job.cameras, folder.resolve(), RIG_NAME))
     write_whole(part / JOB_NAME, msgspec.json.encode(job))
     return job
+
+
+def _require_within(plan: Plan, length_s: float) -> None:
+    """What would happen after the lesson's end never happens, which nobody means who plans it."""
+    for key in ("bumps", "lights", "exposures", "swaps", "faults"):
+        for number, change in enumerate(getattr(plan, key)):
+            if change.at_s >= length_s:
+                raise UserError(
+                    f"lesson plan {plan.name}: {key}[{number}].at_s is {change.at_s:g}, but the lesson is over after "
+                    f"{length_s:.2f} s; have it happen earlier, or set length_s"
+                )
 
 
 def _require_room(part: Path, job: Job) -> None:

@@ -7,6 +7,7 @@ when its input ends. So it ends soon after whoever started it is gone, in whatev
 import contextlib
 import os
 import selectors
+import signal
 import subprocess
 import sys
 import tempfile
@@ -28,7 +29,7 @@ def do_pieces(command: Sequence[str], pieces: Iterable[int], processes: int, ste
         step_done: called for each step of any piece.
 
     Raises:
-        UserError: what a worker raised; the others are ended.
+        UserError: what a worker raised, or a worker was killed; the others are ended.
         RuntimeError: a worker broke down; with what it said last.
     """
     left = list(reversed(list(pieces)))
@@ -114,6 +115,11 @@ class _Worker:
         last = lines[-1] if lines else ""
         if code == USER_ERROR_CODE and last.startswith(USER_ERROR_PREFIX):
             raise UserError(last.removeprefix(USER_ERROR_PREFIX))
+        if code < 0 and -code in {signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP}:
+            raise UserError(
+                f"a process at work was ended ({signal.Signals(-code).name}); unless somebody did that, the memory is full: end "
+                "other programs. What is done is kept: the same command goes on from there"
+            )
         raise RuntimeError(f"a worker ended with code {code}:\n" + "\n".join(lines))
 
     def end(self) -> None:
