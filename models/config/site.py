@@ -15,7 +15,12 @@ SITE_VERSION = 2
 MAX_LATE_S = 5.0
 """Pictures that are late wait in memory."""
 
-Name = Annotated[str, Meta(pattern=r"^[a-z0-9][a-z0-9_-]{0,31}$", description="lower-case letters, digits, - and _")]
+_LONGEST_S = 1e9
+"""Thirty years: what counts nanoseconds can count it."""
+_OFTENEST_S = 0.004
+"""Between two pictures of the fastest camera."""
+
+Name = Annotated[str, Meta(pattern=r"^[a-z0-9][a-z0-9_-]{0,31}\Z", description="lower-case letters, digits, - and _")]
 
 
 class Section(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -48,7 +53,9 @@ class CameraConfig(Section, frozen=True):
 class BusConfig(Section, frozen=True):
     """How the processes of the box talk to one another (Zenoh; the fusion process is the router)."""
 
-    endpoint: Annotated[str, Meta(pattern=r"^tcp/[^/]+:[0-9]{1,5}$", description="where the router listens")] = "tcp/127.0.0.1:7447"
+    endpoint: Annotated[str, Meta(pattern=r"^tcp/[^/]+:[0-9]{1,5}\Z", description="where the router listens")] = (
+        "tcp/127.0.0.1:7447"
+    )
 
 
 class TabletConfig(Section, frozen=True):
@@ -114,9 +121,11 @@ class FaultConfig(Section, frozen=True):
             "lost; late: a `share` of its pictures arrives `by_s` after their time; dark: its lens is covered"
         ),
     ]
-    at_s: Annotated[float, Meta(ge=0, description="seconds after the start of the box")]
-    for_s: Annotated[float, Meta(gt=0, description="how long it lasts")]
-    every_s: Annotated[float, Meta(ge=0, description="it comes again so many seconds after it began; 0: it comes once")] = 0.0
+    at_s: Annotated[float, Meta(ge=0, le=_LONGEST_S, description="seconds after the start of the box")]
+    for_s: Annotated[float, Meta(gt=0, le=_LONGEST_S, description="how long it lasts")]
+    every_s: Annotated[
+        float, Meta(ge=0, le=_LONGEST_S, description="it comes again so many seconds after it began; 0: it comes once")
+    ] = 0.0
     by_s: Annotated[
         float, Meta(ge=-1e6, le=1e6, description="how far a clock jumps, forwards positive, or how late pictures are")
     ] = 5.0
@@ -128,6 +137,8 @@ class FaultConfig(Section, frozen=True):
     def __post_init__(self) -> None:
         if self.kind == "late" and not 0 < self.by_s <= MAX_LATE_S:
             raise ValueError(f"a fault of kind late needs by_s of more than 0 and at most {MAX_LATE_S:g}")
+        if 0 < self.every_s < _OFTENEST_S:
+            raise ValueError(f"a fault needs every_s of at least {_OFTENEST_S:g}, or 0 to come once")
 
 
 class Site(Section, frozen=True):

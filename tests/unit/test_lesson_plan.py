@@ -83,6 +83,52 @@ def test_presets_are_found_by_name_and_what_is_none_is_said() -> None:
         find_plan("sevn_actions")
 
 
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("cameras = 1\n", "cameras is 1; .* 2 or more"),
+        ("cameras = 0\n", "cameras is 0; .* 2 or more"),
+        ("cameras = -1\n", "cameras is -1; .* 2 or more"),
+        ("rate_hz = 120\nshutter = { exposure_ms = 9, readout_ms = 2 }\n", r"shutter\.exposure_ms is 9, but at 120 Hz .* 8\.33 ms"),
+        (
+            'rig = "h36m_s9"\nswaps = [{ cameras = ["cam01", "cam02"], at_s = 1 }]\n',
+            r"swaps\[0\]\.cameras: .* cam01 and cam02 are not of one size",
+        ),
+        ("rate_hz = 120\n", r"shutter\.readout_ms is 16, but at 120 Hz"),
+    ],
+)
+def test_what_no_camera_can_film_and_no_box_can_play_is_refused(text: str, said: str, tmp_path: Path) -> None:
+    (tmp_path / "my.toml").write_text(HEAD + text + PUPIL)
+    with pytest.raises(UserError, match=rf"^lesson plan .*my\.toml: {said}"):
+        find_plan(str(tmp_path / "my.toml"))
+
+
+def test_a_plan_in_another_encoding_is_said_to_be_and_the_mark_of_some_editors_is_none(tmp_path: Path) -> None:
+    path = tmp_path / "my.toml"
+    for encoding in ("utf-16", "latin-1"):
+        path.write_bytes((HEAD + "# p\u00e4dagogisch\n" + PUPIL).encode(encoding))
+        with pytest.raises(UserError, match=r"my\.toml is not in UTF-8 \(its byte \d+ is not\); save it"):
+            find_plan(str(path))
+    path.write_bytes((HEAD + PUPIL).encode("utf-8-sig"))
+    assert find_plan(str(path)).name == "lesson"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        HEAD.replace("lesson", "lesson\\n") + PUPIL,
+        HEAD + PUPIL.replace("p1", "p1\\n"),
+        *(
+            HEAD + PUPIL + '[[faults]]\ncamera = "cam01"\nkind = "drop"\n' + times
+            for times in ("at_s = inf\nfor_s = 1\n", "at_s = 0\nfor_s = inf\n", "at_s = 0\nfor_s = 1\nevery_s = 1e-9\n")
+        ),
+    ],
+)
+def test_names_of_two_lines_and_faults_without_end_or_pause_are_refused(text: str) -> None:
+    with pytest.raises(UserError, match=r"my\.toml: .*\$\.(name|pupils\[0\]\.name|faults\[0\])"):
+        sound(text)
+
+
 def test_a_plan_knows_every_pastime() -> None:
     assert get_args(Pastime) == PASTIMES
 
