@@ -35,6 +35,8 @@ def check(site: Site, rig: Rig, data: Path) -> None:
     for camera in site.cameras:
         path, rate_hz = film_of(camera, data)
         shape = check_video(path, camera.name)
+        for other in swapped_films(camera, data):
+            require_calibrated_size(camera.name, check_video(other, camera.name), shape.size_px)
         require_calibrated_size(camera.name, shape, rig.cameras[rig.index(camera.name)].size_px)
         videos[camera.name] = (shape, rate_hz)
     require_equal_lengths(videos)
@@ -56,6 +58,19 @@ def film_of(camera: CameraConfig, data: Path) -> tuple[Path, float]:
     if camera.kind == "simulated":
         return film_path(path, camera.name), read_plan(path, camera.name).rate_hz
     return path, camera.rate_hz
+
+
+def swapped_films(camera: CameraConfig, data: Path) -> list[Path]:
+    """The films of other cameras that a simulated camera plays, too, since names are swapped in its lesson.
+
+    Raises:
+        UserError: the lesson is not there or cannot be read.
+    """
+    if camera.kind != "simulated":
+        return []
+    folder = data / camera.path
+    names = {name for swap in read_plan(folder, camera.name).swaps for name in swap.cameras}
+    return [film_path(folder, name) for name in sorted(names - {camera.name})]
 
 
 def check_video(path: Path, camera: str) -> VideoShape:

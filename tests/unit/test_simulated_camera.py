@@ -114,6 +114,14 @@ def test_a_lesson_that_cannot_be_played_is_found_before_anything_is_started(
     assert any(found.fault for found in inspect(site, None, tmp_path))
 
 
+def test_a_film_that_is_shown_only_after_a_swap_is_looked_for_before_anything_is_started(tmp_path: Path) -> None:
+    plan = plan_with(swaps=[SwapPlan(cameras=("cam01", "cam03"), at_s=0.5)])
+    folder = draw_lesson(tmp_path / "simulated/drawn", plan)
+    film_path(folder, "cam03").unlink()
+    with pytest.raises(UserError, match=r"camera 'cam01': .*cam03\.avi is missing"):
+        check(site_of("cam01", "cam02"), rig_of(plan_with(size_px=SIZE_PX)), tmp_path)
+
+
 def test_a_simulated_camera_has_its_rate_from_its_lesson() -> None:
     head = 'version = 2\nname = "s"\ncalibration = "rig.toml"\n'
     cameras = "".join(f'[[cameras]]\nname = "{name}"\nkind = "simulated"\npath = "l"\n' for name in CAMERAS)
