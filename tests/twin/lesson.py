@@ -8,8 +8,6 @@ import numpy as np
 
 from edge.simulation.picture.shutter import Shutter
 from models.arrays import Float
-from models.body.model import Body
-from models.body.pose import Pose
 from models.camera.pinhole import Camera
 from models.camera.rig import Rig
 from models.motions.motion import RATE_HZ
@@ -30,34 +28,6 @@ class Performer(Protocol):
 
     def coco_m(self, t_s: float) -> Float:
         """(17 or more, 3) COCO points in the world at a time of the lesson, before its beginning and after its end, too."""
-
-
-class Moves(Protocol):
-    """Poses over time: a `models.motions.motion.Motion`, or a `models.motions.sequence.Sequence` of half an hour."""
-
-    @property
-    def duration_s(self) -> float:
-        """Until the last pose."""
-
-    def pose_at(self, t_s: float) -> Pose:
-        """From 0 to `duration_s`."""
-
-
-@dataclass(frozen=True, eq=False)
-class MotionPerformer:
-    """A body that performs a motion, and stands still before and after it."""
-
-    body: Body
-    motion: Moves
-
-    @property
-    def stature_m(self) -> float:
-        """Standing height."""
-        return self.body.stature_m
-
-    def coco_m(self, t_s: float) -> Float:
-        """(23, 3) COCO points and points of the feet."""
-        return self.body.coco_m(self.motion.pose_at(min(max(t_s, 0.0), self.motion.duration_s)))
 
 
 @dataclass(frozen=True, eq=False)

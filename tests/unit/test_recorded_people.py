@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from models.arrays import Float
+from models.motions.ballistics import GRAVITY_M_S2
 from models.motions.figure import Figure
 from models.motions.motion import RATE_HZ, Motion
 from models.motions.recorded import force, marker_csv, trc
@@ -69,10 +70,10 @@ def test_a_jump_falls_with_gravity_and_lasts_as_long_as_the_plate_is_empty(name:
     heights = centre_of_mass_m(found, motion)[:, 2]
     inside = (motion.times_s > off + 0.02) & (motion.times_s < on - 0.02)
     gravity = -2 * np.polyfit(motion.times_s[inside], heights[inside], 2)[0]
-    assert gravity == pytest.approx(force.GRAVITY_M_PER_S2, rel=0.06)
+    assert gravity == pytest.approx(GRAVITY_M_S2, rel=0.06)
     top = heights[inside].max()
     falls = [top - float(np.interp(at, motion.times_s, heights)) for at in (off, on)]
-    flight = sum(np.sqrt(2 * fall / force.GRAVITY_M_PER_S2) for fall in falls)
+    flight = sum(np.sqrt(2 * fall / GRAVITY_M_S2) for fall in falls)
     assert flight == pytest.approx(on - off, abs=0.015)
 
 
@@ -95,8 +96,7 @@ def test_the_body_weighs_what_its_push_off_tells(name: str) -> None:
     recording, off, on = plate(name)
     first = int(np.flatnonzero(recording.force_n > force.STANDING_N)[0])
     impulse = recording.force_n[first : int(off * recording.rate_hz)].sum() / recording.rate_hz
-    gravity = force.GRAVITY_M_PER_S2
-    change = np.sqrt(2 * gravity * 0.3) + gravity * (on - off) / 2 + gravity * (off - first / recording.rate_hz)
+    change = np.sqrt(2 * GRAVITY_M_S2 * 0.3) + GRAVITY_M_S2 * (on - off) / 2 + GRAVITY_M_S2 * (off - first / recording.rate_hz)
     assert found.body.mass_kg == pytest.approx(impulse / change, rel=0.15)
 
 

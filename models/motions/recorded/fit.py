@@ -89,11 +89,6 @@ class MarkerFit:
         """Root mean square of `errors_m`, in millimetres."""
         return float(np.sqrt(np.nanmean(self.errors_m**2)) * 1000)
 
-    def markers_m(self, name: str) -> Float:
-        """(T, 3) the body's marker of this name."""
-        place = self.names.index(name)
-        return np.array([self.body.landmarks_m(from_vector(pose), self.landmarks)[place] for pose in self.poses])
-
 
 def fit(markers: Markers, model: BodyModel, likely: Likely) -> MarkerFit:
     """Fit a body to a recording.

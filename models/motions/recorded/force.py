@@ -7,9 +7,9 @@ import numpy as np
 
 from models.arrays import Float
 from models.errors import UserError
+from models.motions.ballistics import GRAVITY_M_S2
 from models.motions.recorded.table import numbers, rate_hz, text_of
 
-GRAVITY_M_PER_S2: Final = 9.81
 STANDING_N: Final = 20.0
 """More than this is somebody on the plate; less is its noise."""
 
@@ -36,7 +36,7 @@ class VerticalForce:
 
 def jump_height_m(flight_s: float) -> float:
     """Rise of the centre of mass in a flight that ends as it began: g t^2 / 8."""
-    return GRAVITY_M_PER_S2 * flight_s**2 / 8
+    return GRAVITY_M_S2 * flight_s**2 / 8
 
 
 def decode(data: bytes, name: str) -> VerticalForce:

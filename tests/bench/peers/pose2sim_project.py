@@ -22,7 +22,6 @@ from tests.bench.peers.answer import Answer, Keypoints
 from tests.bench.peers.environment import run_in
 
 NAME = "pose2sim"
-RAW = f"{NAME}.raw"
 DEFAULT = f"{NAME}.butterworth"
 """What its demo does."""
 FILTERS = (
