@@ -31,7 +31,7 @@ def push_off_s(rise_m: float, take_off: float) -> float:
 
 
 def thrown(place_m: Float, velocity_m_s: Float, times_s: Float) -> Float:
-    """(T, 3) of something thrown at time zero from (3,) with (3,) m/s, without drag."""
+    """(T, 3) of something thrown at time zero from (3,) with (3,) m/s, without drag; before zero, of what arrives there so."""
     fall = np.array((0.0, 0.0, -GRAVITY_M_S2 / 2))
     return np.asarray(place_m + times_s[:, None] * velocity_m_s + times_s[:, None] ** 2 * fall)
 

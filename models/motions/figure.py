@@ -7,7 +7,6 @@ import numpy as np
 
 from models.arrays import Float
 from models.body.masses import centre_of_mass_m
-from models.body.pose import Pose
 from models.motions import rotations
 from models.motions.soles import Sole, sole_of
 from models.motions.subject import Subject
@@ -43,11 +42,6 @@ class Figure:
     def leg_m(self) -> float:
         """Hip to ankle, straight."""
         return float(sum(np.linalg.norm(self.bones_m[smpl.INDEX[name]]) for name in ("left_knee", "left_ankle")))
-
-    @cached_property
-    def arm_m(self) -> float:
-        """Shoulder to wrist, straight."""
-        return float(sum(np.linalg.norm(self.bones_m[smpl.INDEX[name]]) for name in ("left_elbow", "left_wrist")))
 
     @cached_property
     def soles(self) -> dict[str, Sole]:
@@ -90,10 +84,6 @@ class Figure:
         """(T, 3) as `models.body.masses.centre_of_mass_m` has them."""
         shares, levers = self.balance
         return np.asarray(shares @ placed.joints_m + np.einsum("tjab,jb->ta", placed.turns, levers))
-
-    def pose_centre_of_mass_m(self, pose: Pose) -> Float:
-        """(3,) of one pose."""
-        return np.asarray(self.centres_of_mass_m(self.place(pose.translation_m[None], pose.rotations_rad[None]))[0])
 
 
 @lru_cache(maxsize=32)

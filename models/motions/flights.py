@@ -1,4 +1,4 @@
-"""Where a thing is over time: in a hand, thrown, coming, bouncing."""
+"""Where a thing is over time: in a hand, bouncing, falling slowly."""
 
 import numpy as np
 
@@ -18,11 +18,6 @@ _SHUTTLE_FALL_M_S = 6.7
 def held(placed: Placed, joint: int, offset_m: Float) -> Float:
     """(T, 3) of a point that is fixed to a joint's segment; `offset_m` (3,) in its frame."""
     return np.asarray(placed.joints_m[:, joint] + rotations.through(placed.turns[:, joint], offset_m))
-
-
-def coming(place_m: Float, velocity_m_s: Float, before_s: Float) -> Float:
-    """(T, 3) of something that arrives at (3,) with (3,) m/s, (T,) seconds before (below 0) that."""
-    return thrown(place_m, velocity_m_s, before_s)
 
 
 def bouncing(place_m: Float, velocity_m_s: Float, radius_m: float, after_s: Float) -> Float:

@@ -31,7 +31,6 @@ _PALM_SHARE: Final = 0.8
 """Of the way from the wrist to the fingers' roots, where the palm touches what it holds."""
 _TWIST_DEG: Final = 80.0
 _WRIST_RANGE_DEG: Final = np.array((75.0, 15.0, 32.0))
-_CHEST: Final = _SPINE[-1]
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,6 @@ from models.arrays import Float
 from models.body import kinematics
 from models.compiled import Counts
 from models.motions.figure import Figure
-from models.motions.motion import RATE_HZ
 from models.skeleton import smpl
 
 PATCH_M: Final = 0.004
@@ -77,11 +76,6 @@ def roll(figure: Figure, local: Float) -> Rolled:
         touching_m=patch[:, 0],
         heading_up_m=shares @ rest[:, 2],
     )
-
-
-def speeds_m_s(travel_m: Float) -> Float:
-    """(T,) of a way sampled at `RATE_HZ`."""
-    return np.asarray(np.gradient(travel_m) * RATE_HZ)
 
 
 def _areas(vertices: Float, faces: Counts) -> Float:

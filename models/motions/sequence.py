@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from models.arrays import Bool, Float
+from models.arrays import Float
 from models.body.pose import Pose
 from models.motions import rotations
 from models.motions.motion import CONTACTS, RATE_HZ, Attempt, Motion, Thing, ThingKind
@@ -91,11 +91,6 @@ class Sequence:
         """As `Motion.pose_at`, from 0 to `duration_s`. Raises as it does."""
         number, inner_s = self._at(t_s)
         return self._motion(number).pose_at(inner_s)
-
-    def contacts_at(self, t_s: float) -> Bool:
-        """(5,) what bears, in the order of `CONTACTS`, at the sample nearest to this time. Raises as `pose_at`."""
-        number, inner_s = self._at(t_s)
-        return np.asarray(self._motion(number).contacts[round(inner_s * RATE_HZ)])
 
     def motion(self) -> Motion:
         """All of it in memory: some 160 kB a second."""

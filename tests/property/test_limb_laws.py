@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.arrays import Float
 from models.body.masses import centre_of_mass_m
 from models.body.model import Body
 from models.body.pose import Pose, t_pose
@@ -154,7 +153,7 @@ def test_the_figure_and_the_body_agree_on_joints_and_centre_of_mass() -> None:
     for subject in (pupil(7, "male"), pupil(14, "female"), pupil(30, "male")):
         pose = Pose(generator.normal(size=3), generator.normal(0, 0.6, (smpl.COUNT, 3)))
         figure, body = figure_of(subject), subject.body
-        joints: Float = figure.place(pose.translation_m[None], pose.rotations_rad[None]).joints_m[0]
-        assert np.allclose(joints, body.joints_m(pose), atol=1e-12)
+        placed = figure.place(pose.translation_m[None], pose.rotations_rad[None])
+        assert np.allclose(placed.joints_m[0], body.joints_m(pose), atol=1e-12)
         wanted = centre_of_mass_m(body.joints_m(pose), body.coco_m(pose), subject.age_years, subject.sex)
-        assert np.allclose(figure.pose_centre_of_mass_m(pose), wanted, atol=1e-12)
+        assert np.allclose(figure.centres_of_mass_m(placed)[0], wanted, atol=1e-12)

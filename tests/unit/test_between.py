@@ -1,5 +1,7 @@
 """What pupils do between attempts obeys the floor, keeps within the joints' limits, and ends where and when it was told to."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -10,9 +12,10 @@ from models.motions import rotations
 from models.motions.actions.library import ACTIONS
 from models.motions.between import LEAST_S, PASTIMES, Between, Go, Pass, Pastime, idle_time, spend
 from models.motions.figure import Figure
-from models.motions.lesson import Entry, lesson
 from models.motions.motion import RATE_HZ, Motion
+from models.motions.perform import perform
 from models.motions.performance import Performance
+from models.motions.sequence import Act, Sequence
 from models.motions.standing import stand
 from models.motions.standpoint import Standpoint, standpoint_of
 from models.motions.subject import Subject
@@ -166,14 +169,19 @@ def test_idle_time_is_long_enough_varied_and_seeded() -> None:
     assert 1700 < sum(act.seconds if isinstance(act, Pass) else 6.5 for act in acts) < 1900
 
 
+def attempt_at(performance: Performance, subject: Subject) -> Act:
+    return lambda _: perform(performance, subject)
+
+
 @pytest.mark.slow
 def test_a_lesson_of_attempts_and_what_is_between_them_is_one_motion() -> None:
     subject, start = pupil(), Standpoint(1.0, 2.0, -0.5)
     actions = sorted(ACTIONS)
-    entries: list[Entry] = []
+    acts: list[Act] = []
     for number, action in enumerate(actions):
-        entries += [Go(Standpoint(float(number), 0.0, 1.0)), Pass("wait", 1.0, number), Performance(action, seed=number)]
-    whole = lesson(entries, subject, start)
+        acts += [partial(spend, what, subject) for what in (Go(Standpoint(float(number), 0.0, 1.0)), Pass("wait", 1.0, number))]
+        acts.append(attempt_at(Performance(action, seed=number), subject))
+    whole = Sequence(acts, start)
     assert [attempt.action for attempt in whole.attempts] == actions
     begins = dict(zip(actions, whole.seams_s[2::3], strict=True))
     for attempt in whole.attempts:

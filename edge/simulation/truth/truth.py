@@ -52,11 +52,6 @@ class Truth:
         """(n, P, 23) nothing hides the point from the camera."""
         return np.asarray(self.coco_seen == Seen.VISIBLE)
 
-    @property
-    def joints_visible(self) -> Bool:
-        """(n, P, 24) nothing hides the joint from the camera, but the flesh around it."""
-        return np.asarray(self.joints_seen == Seen.VISIBLE)
-
     def pose(self, picture: int, pupil: int) -> Pose | None:
         """A pupil's pose at a picture's time; None if he is not there."""
         translation = self.translations_m[picture, pupil].astype(np.float64)

@@ -7,9 +7,9 @@ import numpy as np
 from models.arrays import Float
 from models.motions import rotations
 from models.motions.actions.action import Action, Fault
-from models.motions.ballistics import GRAVITY_M_S2, push_off_s, take_off_m_s, throw_to
+from models.motions.ballistics import GRAVITY_M_S2, push_off_s, take_off_m_s, throw_to, thrown
 from models.motions.figure import Placed
-from models.motions.flights import bouncing, coming, held, spinning
+from models.motions.flights import bouncing, held, spinning
 from models.motions.motion import RATE_HZ, Attempt, Motion, Thing
 from models.motions.natural import Natural
 from models.motions.performance import Performance
@@ -151,7 +151,7 @@ def _ball(line: Timeline, placed: Placed, times_s: Float, catch: float, release:
     place[last:] = bouncing(place[last], velocity, BASKETBALL_RADIUS_M, times_s[last:] - times_s[last])
     turned[last:] = spinning(placed.turns[last, wrist], np.array((0.0, -1.0, 0.0)), 2.0, times_s[last:] - times_s[last])
     arrival = (place[first] - shooter - _PASSER_M * line.across) / _PASS_S - np.array((0.0, 0.0, GRAVITY_M_S2 * _PASS_S / 2))
-    place[:first] = coming(place[first], arrival, times_s[:first] - times_s[first])
+    place[:first] = thrown(place[first], arrival, times_s[:first] - times_s[first])
     place[: max(first - round(_PASS_S * RATE_HZ), 0)] = np.nan
     turned[:first] = spinning(placed.turns[first, wrist], np.array((0.0, -1.0, 0.0)), 1.0, times_s[:first] - times_s[first])
     return Thing("basketball", place, turned)

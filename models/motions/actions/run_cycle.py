@@ -5,9 +5,6 @@ From humanoid3d_run.txt of PyPI's pybullet 3.2.7 (zlib licence, see NOTICE); alt
 
 from typing import Final
 
-CYCLE_S: Final = 0.8000
-"""Duration of the two steps in the recording."""
-
 # fmt: off
 HARMONICS: Final[dict[str, tuple[tuple[float, ...], ...]]] = {
     "pelvis": (

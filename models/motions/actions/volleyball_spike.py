@@ -5,9 +5,9 @@ from typing import Final
 import numpy as np
 
 from models.motions.actions.action import Action, Fault
-from models.motions.ballistics import GRAVITY_M_S2, airborne_s, push_off_s, take_off_m_s
+from models.motions.ballistics import GRAVITY_M_S2, airborne_s, push_off_s, take_off_m_s, thrown
 from models.motions.figure import Placed
-from models.motions.flights import bouncing, coming, held, spinning
+from models.motions.flights import bouncing, held, spinning
 from models.motions.motion import RATE_HZ, Attempt, Motion, Thing
 from models.motions.natural import Natural
 from models.motions.performance import Performance
@@ -160,7 +160,7 @@ def _ball(line: Timeline, placed: Placed, hit: float) -> Thing:
     )
     arriving = (place - setter) / _SET_S - np.array((0.0, 0.0, GRAVITY_M_S2 * _SET_S / 2))
     path = np.empty((len(after), 3))
-    path[:number] = coming(place, arriving, after[:number])
+    path[:number] = thrown(place, arriving, after[:number])
     path[: max(number - round(_SET_S * RATE_HZ), 0)] = np.nan
     path[number:] = bouncing(place, _SPIKED_M_S * line.across, VOLLEYBALL_RADIUS_M, after[number:])
     turns = spinning(np.eye(3), np.array((0.0, 1.0, 0.0)), 1.0, np.minimum(after, 0.0) + 5.0 * np.maximum(after, 0.0))

@@ -29,11 +29,8 @@ From humanoid3d_run.txt of PyPI's pybullet 3.2.7 (zlib licence, see NOTICE); alt
 
 from typing import Final
 
-CYCLE_S: Final = {cycle:.4f}
-"""Duration of the two steps in the recording."""
-
 # fmt: off
-HARMONICS: Final[dict[str, tuple[tuple[float, ...], ...]]] = {{
+HARMONICS: Final[dict[str, tuple[tuple[float, ...], ...]]] = {
 '''
 _TAIL = '''}
 # fmt: on
@@ -54,7 +51,7 @@ def main() -> int:
     table = harmonics(recording.rotations_rad[:-1])
     if check:
         return _compare(table)
-    TABLE.write_text(_source(table, recording.step_s * (len(recording.rotations_rad) - 1)))
+    TABLE.write_text(_source(table))
     sys.stdout.write(f"written: {TABLE.name}\n")
     return 0
 
@@ -72,13 +69,13 @@ def harmonics(cycle: Float) -> dict[str, Float]:
     return table
 
 
-def _source(table: dict[str, Float], cycle_s: float) -> str:
+def _source(table: dict[str, Float]) -> str:
     lines = []
     for joint, rows in table.items():
         lines.append(f'    "{joint}": (')
         lines += [f"        ({', '.join(f'{number + 0.0:.4f}' for number in np.round(row, 4))})," for row in rows]
         lines.append("    ),")
-    return _HEAD.format(cycle=cycle_s) + "\n".join(lines) + "\n" + _TAIL
+    return _HEAD + "\n".join(lines) + "\n" + _TAIL
 
 
 def _compare(table: dict[str, Float]) -> int:
