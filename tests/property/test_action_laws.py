@@ -37,13 +37,13 @@ def test_feet_stand_bodies_fly_and_joints_turn_as_they_can(action: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("age", [7, 12, 30])
-@pytest.mark.parametrize("action", UPRIGHT)
+@pytest.mark.parametrize("action", [*UPRIGHT, "squat", "star_jump", "run"])
 def test_the_floor_bears_the_body_and_never_holds_it_down(action: str, age: float) -> None:
     subject = pupil(age, "male")
     found = measured(perform(Performance(action), subject), subject, every=1000)
     assert found.pull < 0.1
     assert found.push < 4.5
-    assert found.shove < 2.0
+    assert found.shove < (4.0 if action == "run" else 2.0)
 
 
 @pytest.mark.slow
