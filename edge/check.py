@@ -52,11 +52,12 @@ def film_of(camera: CameraConfig, data: Path) -> tuple[Path, float]:
     """The film that a camera plays, and its rate in Hz.
 
     Raises:
-        UserError: it is of a lesson that is not there or cannot be read.
+        UserError: it is of a lesson that is not there or cannot be read, or that has no such camera.
     """
     path = data / camera.path
     if camera.kind == "simulated":
-        return film_path(path, camera.name), read_plan(path, camera.name).rate_hz
+        rate_hz = read_plan(path, camera.name).rate_hz
+        return _film_of_lesson(path, camera.name, camera.name), rate_hz
     return path, camera.rate_hz
 
 
@@ -64,13 +65,24 @@ def swapped_films(camera: CameraConfig, data: Path) -> list[Path]:
     """The films of other cameras that a simulated camera plays, too, since names are swapped in its lesson.
 
     Raises:
-        UserError: the lesson is not there or cannot be read.
+        UserError: the lesson is not there or cannot be read, or one of its films is missing.
     """
     if camera.kind != "simulated":
         return []
     folder = data / camera.path
     names = {name for swap in read_plan(folder, camera.name).swaps for name in swap.cameras}
-    return [film_path(folder, name) for name in sorted(names - {camera.name})]
+    return [_film_of_lesson(folder, name, camera.name) for name in sorted(names - {camera.name})]
+
+
+def _film_of_lesson(folder: Path, name: str, camera: str) -> Path:
+    path = film_path(folder, name)
+    if not path.is_file():
+        there = ", ".join(sorted(film.stem for film in folder.glob(film_path(folder, "*").name))) or "no camera"
+        raise UserError(
+            f"camera '{camera}': {path} is missing; the lesson has films of {there}: correct the camera's name or `path` in the "
+            "site file, or render the lesson again with `kinebox simulate`"
+        )
+    return path
 
 
 def check_video(path: Path, camera: str) -> VideoShape:
