@@ -40,8 +40,8 @@ _KEYS: Final = np.array(
     (
         (0.00,   0,  0,  0,  0,   0,  10, 10, 9.65, 9.65, 0.00, 1.00),
         (0.48,  -3,  8, -3, 12,   2,  20, 10, 150, 150, -0.07, 0.99),
-        (0.82,   4, 22, -5, 38,   5,  26, 10, 156, 154, 0.30, 0.89),
-        (1.04,  28, 37, 10, 42,  24,  46, 8,  152, 160, 0.62, 0.87),
+        (0.82,   4, 22, -5, 38,   5,  26, 10, 156, 154, 0.29, 0.892),
+        (1.04,  28, 37, 10, 42,  24,  44, 8,  152, 160, 0.60, 0.875),
         (1.28,  82, 55, 44, 59,  54,  20,  5, 144, 165, 1.04, 0.96),
         (1.44, 128, 40, 40, 59,  59,   8,  4, 150, 168, 1.31, 1.03),
         (1.58, 160, 12, 17, 59,  59,   4,  4, 160, 166, 1.50, 1.11),
@@ -57,12 +57,14 @@ _FINGERS_DEG: Final = 135.0
 """Where the fingers point: from straight behind the body to the side of the hand."""
 _BACK: Final = 0.46
 """How far behind the trunk a leg swings, tangent."""
-_STEP: Final = 0.82
+_STEP: Final = 0.78
 """How far the first foot steps to the side, legs."""
+_SPREAD_DEG: Final = 62.0
+"""No leg is spread further to its side."""
 _TURNED_OUT_DEG: Final = 34.0
 """How much further than in standing the foot that carries alone points to the side."""
 _HANDS_APART: Final = 0.46
-_KICK_S, _PUSH_S = -0.05, 0.075
+_KICK_S, _PUSH_S = -0.05, 0.08
 """The second foot leaves so long after the lunge, the first one so long before the second hand bears."""
 _REACH_S: Final = (0.055, 0.04)
 """The first and the second hand touch the ground so long after their key poses."""
@@ -150,6 +152,7 @@ def _course(performance: Performance) -> _Course:
     for side in ("left", "right"):
         names[f"{side}_out"][_SECOND_HAND:] *= spread
         names[f"{side}_out"][_FIRST_HAND:] += float(natural("lean", np.zeros(1))[0])
+        np.minimum(names[f"{side}_out"], _SPREAD_DEG, out=names[f"{side}_out"])
         names[f"{side}_knee"][_SECOND_HAND:] += 55 * severity("bent_legs") + abs(float(natural("bend", np.zeros(1))[0]))
         names[f"{side}_arm"][_ARMS_UP:] += float(natural("lean", np.zeros(1))[0])
     gaps = np.diff(first[:, 0])

@@ -56,6 +56,10 @@ _SEAT_STAYS_S: Final = 0.03
 """The seat stays on the mat so long after the feet have landed."""
 _LEG_OF_KEYS_M: Final = 0.64
 _FINGERS_IN_RAD: Final = np.radians(32.0)
+_SUPPLE_DEG: Final = 150.0
+"""Whose hips bend less gets up with the pelvis tipped less far over the thighs: by this share of what they bend less, as the feet
+land and as he is up on them."""
+_STIFF_SHARES: Final = (0.3, 0.9)
 _SIDES: Final = ("left", "right")
 _NECK_SHARE: Final = 0.46
 _OUT: Final = (0.6, 0.9, 0.2)
@@ -114,10 +118,11 @@ def perform(performance: Performance, subject: Subject) -> Motion:
 def _right_first(performance: Performance, subject: Subject) -> Motion:
     """The right foot steps off the mat first."""
     figure = figure_of(subject)
-    course = _course(performance, figure)
+    limits = limits_rad(subject.age_years)
+    course = _course(performance, figure, -float(np.degrees(limits[smpl.INDEX["left_hip"], 1, 0])))
     values = _values(figure, course)
     local = posing.upper_body(figure, values)
-    _tuck(course, limits_rad(subject.age_years), local)
+    _tuck(course, limits, local)
     way = _way(figure, course, values, local)
     walk = walk_off(
         figure, float(course.at_s[-1]) + 0.1, way.landed_m, mat.FROM_M + mat.LENGTH_M, len(course.times_s), mat.HEIGHT_M
@@ -137,7 +142,7 @@ def _right_first(performance: Performance, subject: Subject) -> Motion:
     return Motion(pelvis[:end], rotations.vectors(local[:end]), contacts[:end], (attempt,))
 
 
-def _course(performance: Performance, figure: Figure) -> _Course:
+def _course(performance: Performance, figure: Figure, hips_bend_deg: float) -> _Course:
     natural, severity = Natural(performance), performance.severity
     untucked, apart, hands = severity("head_not_tucked"), severity("legs_open"), severity("hands_to_get_up")
     keys = _KEYS.copy()
@@ -148,6 +153,10 @@ def _course(performance: Performance, figure: Figure) -> _Course:
     for name, rows in (("lean", (_HANDS_DOWN, _UP)), ("neck", (_FEET_OFF, _BACK)), ("arm", (_SEAT, _UP)), ("bend", (_BACK, _UP))):
         word = "lean" if name == "neck" else "bend" if name == "arm" else name
         names[name][rows[0] : rows[1] + 1] += float(natural(word, np.zeros(1))[0])
+    for row, share in zip((_FEET_ON, _UP), _STIFF_SHARES, strict=True):
+        less = share * max(0.0, _SUPPLE_DEG - hips_bend_deg)
+        names["tip"][row] -= less
+        names["hip"][row] += less
 
     gaps = np.diff(keys[:, 0])
     rolling = np.arange(1, len(keys))
