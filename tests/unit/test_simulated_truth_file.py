@@ -79,14 +79,22 @@ def test_another_version_is_refused_and_named() -> None:
         decode(changed.getvalue(), "truth.npz")
 
 
-@pytest.mark.parametrize("damage", ["nothing", "cut", "other", "shape"])
+@pytest.mark.parametrize("damage", ["nothing", "cut", "other", "shape", "locked"])
 def test_what_is_no_truth_is_refused(damage: str) -> None:
     data = encode(some_lesson())
     other = io.BytesIO()
     np.savez(other, allow_pickle=False, something=np.zeros(3))
     lesson = some_lesson()
     wrong = replace(lesson, cameras={**lesson.cameras, "cam02": some_truth(3, pupils=3)})
-    damaged = {"nothing": b"", "cut": data[: len(data) // 2], "other": other.getvalue(), "shape": encode(wrong)}[damage]
+    locked = bytearray(data)
+    locked[data.index(b"PK\1\2") + 8] |= 1  # one bit says that what follows is encrypted
+    damaged = {
+        "nothing": b"",
+        "cut": data[: len(data) // 2],
+        "other": other.getvalue(),
+        "shape": encode(wrong),
+        "locked": bytes(locked),
+    }[damage]
     with pytest.raises(UserError, match=r"truth\.npz: is no lesson's truth, or is damaged"):
         decode(damaged, "truth.npz")
 

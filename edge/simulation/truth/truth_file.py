@@ -35,6 +35,10 @@ _SHAPES: Final[dict[str, tuple[type, tuple[int | str, ...]]]] = {
 }
 
 
+_DAMAGED = (ValueError, EOFError, KeyError, TypeError, AttributeError, OSError, RuntimeError, zipfile.BadZipFile, zlib.error)
+"""What NumPy and zipfile raise at bytes that were changed; RuntimeError for a method or a lock that zipfile does not know."""
+
+
 class _Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     format: str
     version: int
@@ -85,7 +89,7 @@ def decode(data: bytes, name: str) -> LessonTruth:
         shapes, rest = arrays["shapes"], arrays["rest_joints_m"]
         if shapes.ndim != 2 or len(shapes) != len(header.pupils) or rest.shape != (len(header.pupils), smpl.COUNT, 3):
             raise ValueError(f"shapes {shapes.shape} and rest_joints_m {rest.shape} of {len(header.pupils)} pupils")
-    except (ValueError, EOFError, KeyError, TypeError, AttributeError, OSError, zipfile.BadZipFile, zlib.error) as error:
+    except _DAMAGED as error:
         raise UserError(f"{name}: is no lesson's truth, or is damaged ({error}); render the lesson again") from error
     shutter = Shutter(header.exposure_s, header.readout_s)
     return LessonTruth(header.origin, header.pupils, shapes, rest, shutter, header.sizes_px, cameras)
