@@ -11,7 +11,7 @@ from models.motions.actions.library import ACTIONS
 from models.motions.motion import Attempt
 from tests.installed import ROOT
 
-MOST_BYTES = 300_000
+MOST_BYTES = 350_000
 
 
 def decoded(data: bytes) -> UInt8:
