@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from models.body.prior import SEXES, Sex
 from models.motions.actions.library import ACTIONS
-from models.motions.motion import Handed
 from models.motions.performance import AMPLITUDE, SEVERITY, TEMPO, Performance
 from models.motions.subject import Subject
 from tests.bodies import body_model, prior_of
@@ -27,41 +26,37 @@ def some_pupil(age_years: float, sex: Sex, seed: int) -> Subject:
     return Subject(body_model().shaped(likely.sample(np.random.default_rng(seed))), age_years, sex)
 
 
-def subjects(oldest_years: float = 60.0) -> st.SearchStrategy[Subject]:
-    """Pupils and grown-ups."""
-    ages = st.one_of(st.floats(6, 16), st.floats(18, oldest_years))
-    return st.builds(some_pupil, ages, st.sampled_from(SEXES), st.integers(0, 1000))
-
-
 @dataclass(frozen=True)
-class Way:
-    """How an action is performed, whichever it is: a fault is named by its number among the action's, counted round."""
+class Somebody:
+    """A random person, by what makes him: Hypothesis prints what it draws, and a `Subject` is tens of kilobytes of numbers.
 
-    handed: Handed
-    tempo: float
-    amplitude: float
-    skill: float
-    faults: dict[int, float]
+    Its warning of that, an error here, would break off the replay of what failed, and show as `FlakyStrategyDefinition`.
+    """
+
+    age_years: float
+    sex: Sex
     seed: int
 
-    def of(self, action: str) -> Performance:
-        names = [fault.name for fault in ACTIONS[action].faults]
-        faults = {names[number % len(names)]: severity for number, severity in self.faults.items()}
-        return Performance(action, self.handed, self.tempo, self.amplitude, self.skill, faults, self.seed)
+    def subject(self) -> Subject:
+        return some_pupil(self.age_years, self.sex, self.seed)
 
 
-def ways(most_faults: int) -> st.SearchStrategy[Way]:
-    """Every way to perform, with so many faults at once or fewer.
+def people(oldest_years: float = 60.0) -> st.SearchStrategy[Somebody]:
+    """Pupils and grown-ups."""
+    ages = st.one_of(st.floats(6, 16), st.floats(18, oldest_years))
+    return st.builds(Somebody, ages, st.sampled_from(SEXES), st.integers(0, 1000))
 
-    Drawn with the subject before a test begins: Hypothesis replays what failed from the arguments, and calls a test that draws
-    more by `st.data` on its way flaky, which hides what failed.
-    """
-    return st.builds(
-        Way,
-        handed=st.sampled_from(("right", "left")),
-        tempo=st.floats(*TEMPO),
-        amplitude=st.floats(*AMPLITUDE),
-        skill=st.sampled_from((0.0, 0.5, 1.0)),
-        faults=st.dictionaries(st.integers(0, 11), st.floats(*SEVERITY), max_size=most_faults),
-        seed=st.integers(0, 1000),
+
+@st.composite
+def performances(draw: st.DrawFn, action: str, most_faults: int) -> Performance:
+    """Of an action, in every way that it may be performed, with so many faults at once or fewer."""
+    names = [fault.name for fault in ACTIONS[action].faults]
+    return Performance(
+        action,
+        handed=draw(st.sampled_from(("right", "left"))),
+        tempo=draw(st.floats(*TEMPO)),
+        amplitude=draw(st.floats(*AMPLITUDE)),
+        skill=draw(st.sampled_from((0.0, 0.5, 1.0))),
+        faults=draw(st.dictionaries(st.sampled_from(names), st.floats(*SEVERITY), max_size=most_faults)),
+        seed=draw(st.integers(0, 1000)),
     )

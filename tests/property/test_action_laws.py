@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from models.body.pose import mirrored
 from models.body.prior import Sex
@@ -16,7 +17,7 @@ from models.motions.subject import Subject
 from tests import gym_measures
 from tests.action_measures import MEASURES, Seen
 from tests.motion_laws import assert_lawful, measured
-from tests.pupils import Way, pupil, subjects, ways
+from tests.pupils import Somebody, people, performances, pupil
 
 UPRIGHT = tuple(MEASURES)
 ONE_FAST = [pytest.param(action, marks=[pytest.mark.slow] * (action != "soccer_kick")) for action in UPRIGHT]
@@ -49,10 +50,11 @@ def test_the_floor_bears_the_body_and_never_holds_it_down(action: str, age: floa
 @pytest.mark.motions
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("action", UPRIGHT)
-@given(way=ways(most_faults=2), subject=subjects())
+@given(data=st.data(), who=people())
 @settings(max_examples=25)
-def test_feet_stand_bodies_fly_and_joints_turn_as_they_can_for_everybody(action: str, way: Way, subject: Subject) -> None:
-    assert_lawful(perform(way.of(action), subject), subject)
+def test_feet_stand_bodies_fly_and_joints_turn_as_they_can_for_everybody(action: str, data: st.DataObject, who: Somebody) -> None:
+    subject = who.subject()
+    assert_lawful(perform(data.draw(performances(action, most_faults=2)), subject), subject)
 
 
 @pytest.mark.parametrize("action", ONE_FAST)

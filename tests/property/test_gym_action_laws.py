@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from models.arrays import Float
 from models.body.pose import mirrored
@@ -21,7 +22,7 @@ from models.skeleton import smpl
 from tests.action_measures import Seen
 from tests.gym_measures import MEASURES, jump_distance_m
 from tests.motion_laws import Measured, assert_lawful, intervals, measured
-from tests.pupils import Way, pupil, subjects, ways
+from tests.pupils import Somebody, people, performances, pupil
 
 STANDING = ("squat", "star_jump", "long_jump")
 """Feet and flight only, on the floor: the laws of all such actions hold."""
@@ -76,10 +77,11 @@ def test_feet_stand_and_bodies_fly(action: str) -> None:
 @pytest.mark.motions
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("action", [*STANDING, "run"])
-@given(way=ways(most_faults=1), subject=subjects(oldest_years=50))
+@given(data=st.data(), who=people(oldest_years=50))
 @settings(max_examples=12)
-def test_feet_stand_and_bodies_fly_for_everybody(action: str, way: Way, subject: Subject) -> None:
-    motion = perform(way.of(action), subject)
+def test_feet_stand_and_bodies_fly_for_everybody(action: str, data: st.DataObject, who: Somebody) -> None:
+    subject = who.subject()
+    motion = perform(data.draw(performances(action, most_faults=1)), subject)
     assert_lawful(motion, subject, every=8, sinks_mm=6.0 if action == "run" else 3.0)
 
 
@@ -98,10 +100,11 @@ def test_hands_and_feet_neither_slide_nor_sink_on_floor_and_mat(action: str, age
 @pytest.mark.motions
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("action", FLOOR)
-@given(way=ways(most_faults=1), subject=subjects(oldest_years=50))
+@given(data=st.data(), who=people(oldest_years=50))
 @settings(max_examples=8)
-def test_hands_and_feet_neither_slide_nor_sink_for_everybody(action: str, way: Way, subject: Subject) -> None:
-    motion = perform(way.of(action), subject)
+def test_hands_and_feet_neither_slide_nor_sink_for_everybody(action: str, data: st.DataObject, who: Somebody) -> None:
+    subject = who.subject()
+    motion = perform(data.draw(performances(action, most_faults=1)), subject)
     assert_borne(motion, subject, measured(motion, subject, every=1000), action == "forward_roll", sinks_m=0.025, every=12)
 
 
