@@ -208,3 +208,9 @@ def _description() -> Description:
     streams = streams_of(lesson_of(1, 2.0), LAW)
     contexts = [look(stream.truth)[1] for stream in streams]
     return describe([(context, LAW.errors(context, np.random.default_rng(0))) for context in contexts])
+
+
+def test_the_twin_that_comes_with_kinebox_can_be_loaded() -> None:
+    twin = Twin.load()
+    assert len(twin.library) > 1000
+    assert len(set(twin.library.seeds)) == 5
