@@ -1,0 +1,33 @@
+"""One try at an action, as it was found in the motion."""
+
+from dataclasses import dataclass
+from typing import Final, Literal, get_args
+
+from models.motions.motion import Handed
+
+Phase = Literal["start", "exertion", "peak", "end"]
+PHASES: Final[tuple[Phase, ...]] = get_args(Phase)
+"""Keyframes of an attempt in their order; `models.motions.motion.Attempt` says what each is."""
+
+
+@dataclass(frozen=True)
+class FoundAttempt:
+    """An attempt.
+
+    Attributes:
+        action: name of the action, as in `models.motions.actions.library.ACTIONS`.
+        handed: the side that leads.
+        moments_s: instants of `PHASES`, in their order, on the clock of the track that it was found in.
+    """
+
+    action: str
+    handed: Handed
+    moments_s: tuple[float, float, float, float]
+
+    def __post_init__(self) -> None:
+        if not all(before < after for before, after in zip(self.moments_s, self.moments_s[1:], strict=False)):
+            raise ValueError(f"the keyframes of an attempt follow one another: {self.action} has {self.moments_s}")
+
+    def moment_s(self, phase: Phase) -> float:
+        """Of one keyframe."""
+        return self.moments_s[PHASES.index(phase)]

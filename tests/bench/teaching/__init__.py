@@ -1,0 +1,1 @@
+"""How well attempts are found, timed, measured and corrected."""
