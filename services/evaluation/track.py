@@ -66,11 +66,11 @@ class Track:
 
 def known_track(joints_m: Float, frame_s: float, sigma_m: float = 0.0) -> Track:
     """A motion whose every joint (T, 17, 3) is known, from time 0: truth, a standard, an imported file. NaN is unknown."""
-    known = np.isfinite(joints_m).all(axis=2)
+    known: Bool = np.asarray(np.isfinite(joints_m).all(axis=2))
     states = np.where(known, JointState.SEEN, JointState.UNKNOWN).astype(np.uint8)
     covariance = np.broadcast_to(sigma_m**2 * np.eye(3), (*joints_m.shape, 3))
     return Track(
-        np.arange(len(joints_m)) * frame_s,
+        np.arange(len(joints_m), dtype=np.float64) * frame_s,
         np.where(known[..., None], joints_m, np.nan),
         np.where(known[..., None, None], covariance, np.nan),
         states,
@@ -98,4 +98,5 @@ def track_of(motions: Sequence[Motion], frame_s: float) -> Track:
         known = motion.states != JointState.UNKNOWN
         joints[frame, known], covariance[frame, known] = motion.joints_m[known], motion.covariance_m2[known]
         states[frame] = motion.states
-    return Track(first_ns * 1e-9 + np.arange(count) * frame_s, joints, covariance, states)
+    t_s = first_ns * 1e-9 + np.arange(count, dtype=np.float64) * frame_s
+    return Track(t_s, joints, covariance, states)
