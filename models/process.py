@@ -23,6 +23,8 @@ RECORDER = "recorder"
 """The process that writes lessons."""
 REPLAY = "replay"
 """The process that plays a lesson, in fusion's place."""
+EVALUATION = "evaluation"
+"""The process that finds attempts in the smooth motion, and says what is to be said of them."""
 ROUTERS = (ROUTER, REPLAY)
 """One of them runs in every box, and has the bus."""
 SPARE_READY = "kinebox spare: ready"

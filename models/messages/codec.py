@@ -11,13 +11,14 @@ import msgspec
 import numpy as np
 
 from models.messages.control import ViewControl
+from models.messages.feedback import ActivityRequest, Feedback
 from models.messages.health import Health
 from models.messages.lesson import FusionLog, LessonRequest, SegmentRequest
 from models.messages.motion import Motion
 from models.messages.observation import Observation
 
 VERSION = 2
-Message = Observation | Motion | ViewControl | Health | FusionLog | SegmentRequest | LessonRequest
+Message = Observation | Motion | ViewControl | Health | FusionLog | SegmentRequest | LessonRequest | Feedback | ActivityRequest
 MessageT = TypeVar("MessageT", bound=Message)
 
 _TYPES: dict[int, type] = {
@@ -28,6 +29,8 @@ _TYPES: dict[int, type] = {
     5: FusionLog,
     6: SegmentRequest,
     7: LessonRequest,
+    8: Feedback,
+    9: ActivityRequest,
 }
 _CODES = {kind: code for code, kind in _TYPES.items()}
 _ARRAY = 1

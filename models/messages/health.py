@@ -84,6 +84,30 @@ class ReplayHealth(msgspec.Struct, frozen=True):
     speed: float
 
 
+class EvaluationHealth(msgspec.Struct, frozen=True):
+    """What the evaluation process does.
+
+    Attributes:
+        activity: the action that pupils are to do; empty if whatever they do is recognised.
+        chosen_by: whose word that was: the site file's, or a tablet's.
+        state: "moving" while an attempt seems to be under way; "waiting" between them; "unknown" if no pupil is seen.
+        attempts: found since the process started.
+        frame_ms: CPU milliseconds a smooth motion over the last second, those in which an attempt ended included.
+        attempt_ms: CPU milliseconds that the last attempt took; 0 before the first.
+        missed: smooth motions of the last second that fusion published and that were not taken in.
+        rejected: messages of the last second that could not be read.
+    """
+
+    activity: str
+    chosen_by: Literal["site", "tablet"]
+    state: Literal["waiting", "moving", "unknown"]
+    attempts: int
+    frame_ms: float
+    attempt_ms: float
+    missed: int
+    rejected: int
+
+
 class MachineHealth(msgspec.Struct, frozen=True):
     """The machine under the box (said by the supervisor).
 
@@ -141,7 +165,8 @@ class Health(msgspec.Struct, frozen=True):
     """State of one process, published about once a second on its own topic.
 
     Attributes:
-        process: "edge-<camera>", "fusion", "tablet", "recorder", "supervisor", or "replay" in the place of the first two.
+        process: "edge-<camera>", "fusion", "evaluation", "tablet", "recorder", "supervisor", or "replay" in the place of the
+            cameras and fusion.
         state: "starting" (its loop has yet to begin; for up to ten minutes it is not taken for hung), "ok", "degraded" (works, less
             than wished), "failed" (does not work any more).
         troubles: why it is not "ok"; empty if and only if it is.
@@ -161,6 +186,7 @@ class Health(msgspec.Struct, frozen=True):
     machine: MachineHealth | None = None
     replay: ReplayHealth | None = None
     supervisor: SupervisorHealth | None = None
+    evaluation: EvaluationHealth | None = None
 
     def __post_init__(self) -> None:
         if (self.state == "ok") == bool(self.troubles):

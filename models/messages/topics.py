@@ -33,6 +33,16 @@ def lesson_request() -> str:
     return f"{ROOM}/lesson/request"
 
 
+def feedback() -> str:
+    """evaluation -> tablet, fusion (for its log)"""
+    return f"{ROOM}/evaluation/feedback"
+
+
+def activity_request() -> str:
+    """tablet -> evaluation"""
+    return f"{ROOM}/evaluation/activity"
+
+
 def health(process: str) -> str:
     """every process -> everyone"""
     return f"{ROOM}/health/{process}"

@@ -15,6 +15,7 @@ CalibrationCode = Literal["cameras_exchanged", "cameras_disagree", "camera_moved
 CALIBRATION_CODES: tuple[CalibrationCode, ...] = get_args(CalibrationCode)
 """What the cameras see is not what the calibration says."""
 FusionCode = Literal["camera_unheard", "pictures_not_fused", "epochs_differ"]
+EvaluationCode = Literal["motion_missed"]
 RecorderCode = Literal["not_recording", "recording_stalled"]
 SupervisorCode = Literal["given_up", "restarting", "log_not_kept", "machine_unmeasured"]
 TroubleCode = Literal[
@@ -24,6 +25,7 @@ TroubleCode = Literal[
     CameraCode,
     CalibrationCode,
     FusionCode,
+    EvaluationCode,
     RecorderCode,
     SupervisorCode,
 ]

@@ -7,7 +7,17 @@ import numpy as np
 
 from models.messages import codec, topics
 from models.messages.control import CropPrediction, ViewControl
-from models.messages.health import CameraHealth, FusionHealth, Health, MachineHealth, RecorderHealth, Restarts, SupervisorHealth
+from models.messages.feedback import ActivityRequest, Feedback, Judgement, MeasureResult
+from models.messages.health import (
+    CameraHealth,
+    EvaluationHealth,
+    FusionHealth,
+    Health,
+    MachineHealth,
+    RecorderHealth,
+    Restarts,
+    SupervisorHealth,
+)
 from models.messages.lesson import Entry, FusionLog, LessonRequest, SegmentRequest
 from models.messages.motion import CameraUse, JointState, Motion
 from models.messages.observation import Crop, Observation, Person
@@ -61,6 +71,7 @@ def healths(t_ns: int) -> dict[str, Health]:
     """A word of every process, by its name."""
     camera = CameraHealth(RIG.names[0], 30.0, 10.0, 10.0, 0, 5.0, "thunder", {"pose": 24.0, "decode": 4.0})
     machine = MachineHealth(1.2, 2.0, 4000.0, 9000.0, 55.0, 10**18, 0.0)
+    evaluation = EvaluationHealth("long_jump", "tablet", "moving", 3, 0.2, 30.0, 0, 0)
     mending = Trouble("restarting", "tablet hung and is started again")
     restarts = (Restarts("tablet", 1, t_ns, "hung", ""),)
     return {
@@ -77,8 +88,43 @@ def healths(t_ns: int) -> dict[str, Health]:
             machine=machine,
             supervisor=SupervisorHealth("0.1", t_ns, restarts),
         ),
+        "evaluation": Health("evaluation", 5, t_ns, "ok", (), 0.1, 160.0, evaluation=evaluation),
         "recorder": Health("recorder", 4, t_ns, "ok", (), 0.01, 60.0, recorder=RecorderHealth("2026", "a", 3.0, 1_000_000, 0)),
     }
+
+
+def feedback(t_ns: int) -> Feedback:
+    """A shot of ten frames that ended now, with something to correct."""
+    frames, frame_ns = 10, 33_333_333
+    first_ns = t_ns - frames * frame_ns
+    keyframes_ns = (first_ns, first_ns + 3 * frame_ns, first_ns + 6 * frame_ns, first_ns + 9 * frame_ns)
+    joints_m = np.tile(JOINTS_M.astype(np.float32), (frames, 1, 1))
+    return Feedback(
+        id=keyframes_ns[-1] // 1_000_000,
+        epoch=0,
+        action="basketball_shot",
+        by="recognised",
+        handed="right",
+        keyframes_ns=keyframes_ns,
+        t_published_ns=t_ns,
+        score=70.0,
+        score_sigma=5.0,
+        praise="elbow_out",
+        cue="no_knee_bend",
+        cue_certainty=0.97,
+        judgements=(Judgement("no_knee_bend", 0.9, 0.1), Judgement("elbow_out", 0.1, 0.1), Judgement("flat_shot", None, None)),
+        measures=(
+            MeasureResult("knee_flexion", 25.0, 4.0, "deg", "poor", low=60.0),
+            MeasureResult("balance", None, None, "cm", "unknown"),
+        ),
+        shown=("knee_flexion", "balance"),
+        t_first_ns=first_ns,
+        frame_ns=frame_ns,
+        joints_m=joints_m,
+        states=np.full((frames, coco.COUNT), JointState.SEEN, np.uint8),
+        colours=np.full((frames, coco.COUNT), 2, np.uint8),
+        standard_m=joints_m + np.float32(0.1),
+    )
 
 
 def log(t_ns: int, sequence: int = 0, segment_ns: int = 1) -> FusionLog:
@@ -103,4 +149,6 @@ def by_topic() -> dict[str, list[bytes]]:
     found[topics.fusion_log()] = [codec.encode(log(t_ns))]
     found[topics.segment_request()] = [codec.encode(SegmentRequest(t_ns))]
     found[topics.lesson_request()] = [codec.encode(LessonRequest("start", "a lesson")), codec.encode(LessonRequest("stop"))]
+    found[topics.feedback()] = [codec.encode(feedback(t_ns))]
+    found[topics.activity_request()] = [codec.encode(ActivityRequest("long_jump")), codec.encode(ActivityRequest(""))]
     return found

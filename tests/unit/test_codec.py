@@ -8,8 +8,10 @@ import pytest
 
 from models.messages import codec
 from models.messages.control import CropPrediction, ViewControl
+from models.messages.feedback import ActivityRequest, Feedback, Judgement, MeasureResult
 from models.messages.health import (
     CameraHealth,
+    EvaluationHealth,
     FusionHealth,
     Health,
     MachineHealth,
@@ -24,6 +26,56 @@ from models.messages.observation import Crop, Observation, Person
 from models.messages.trouble import Trouble
 
 GOLDEN = Path(__file__).parents[1] / "golden/codec"
+
+
+def feedback() -> Feedback:
+    """Three frames of a kick with something to correct."""
+    ramp = np.arange(3 * 17, dtype=np.float32).reshape(3, 17)
+    states = (np.arange(3 * 17).reshape(3, 17) % 3).astype(np.uint8)
+    standard_m = np.stack((ramp / 8, -ramp / 16, ramp / 32), axis=2).astype(np.float32)
+    standard_m[1, 4] = np.nan
+    return Feedback(
+        id=10**9 + 66,
+        epoch=2,
+        action="soccer_kick",
+        by="recognised",
+        handed="left",
+        keyframes_ns=(10**15, 10**15 + 20_000_000, 10**15 + 40_000_000, 10**15 + 66_000_000),
+        t_published_ns=10**15 + 500_000_000,
+        score=71.5,
+        score_sigma=6.25,
+        praise="upright_trunk",
+        cue="stiff_knee",
+        cue_certainty=0.9375,
+        judgements=(
+            Judgement("stiff_knee", 0.875, 0.125),
+            Judgement("upright_trunk", -0.25, 0.5),
+            Judgement("short_step", None, None),
+        ),
+        measures=(
+            MeasureResult("knee_flexion", 21.5, 4.5, "deg", "poor", low=60.0),
+            MeasureResult("foot_speed", 9.25, 0.5, "m/s", "fair", low=8.0, high=14.0),
+            MeasureResult("balance", None, None, "cm", "unknown"),
+        ),
+        shown=("foot_speed", "knee_flexion"),
+        t_first_ns=10**15,
+        frame_ns=33_333_333,
+        joints_m=np.stack((ramp / 8, -ramp / 8, ramp / 16), axis=2).astype(np.float32),
+        states=states,
+        colours=np.where(states == 2, np.arange(3, dtype=np.uint8)[:, None] + 1, 0).astype(np.uint8),
+        standard_m=standard_m,
+    )
+
+
+def feedback_of_nothing() -> Feedback:
+    """An attempt of which nothing could be judged."""
+    nothing = np.zeros((5, 17), np.uint8)
+    return Feedback(
+        id=0, epoch=0, action="run", by="chosen", handed="right", keyframes_ns=(0, 1, 2, 4), t_published_ns=5, score=None,
+        score_sigma=None, praise="", cue="", cue_certainty=0.0, judgements=(), measures=(), shown=(), t_first_ns=0, frame_ns=1,
+        joints_m=np.zeros((5, 17, 3), np.float32), states=nothing, colours=nothing.copy(),
+        standard_m=np.full((5, 17, 3), np.nan, np.float32),
+    )  # fmt: skip
 
 
 def examples() -> dict[str, codec.Message]:
@@ -76,6 +128,14 @@ def examples() -> dict[str, codec.Message]:
                 "0.1.0", 10**14, (Restarts("edge-cam01", 5, 10**15, "hung", "ended 6 times"),)
             ),
         ),
+        "health_evaluation": Health(
+            "evaluation", 4715, 10**15, "ok", (), 0.05, 160.5,
+            evaluation=EvaluationHealth("long_jump", "tablet", "moving", 7, 0.25, 31.5, 0, 1),
+        ),
+        "feedback": feedback(),
+        "feedback_unknown": feedback_of_nothing(),
+        "activity_request": ActivityRequest("soccer_kick"),
+        "activity_request_any": ActivityRequest(""),
         "fusion_log": FusionLog(10**15, 3, (Entry("observation", 10**15 + 7, b"\x01\x01"), Entry("tick", 10**15 + 8, b""))),
         "segment_request": SegmentRequest(10**15),
         "lesson_request": LessonRequest("start", "7b, throwing"),
@@ -198,3 +258,67 @@ def test_a_time_or_number_in_the_log_that_no_clock_gives_is_refused_by_the_reade
     fields |= {"entries": [("tick", value, b"")]} if (name, field) == ("fusion_log", "t_ns") else {field: value}
     with pytest.raises(codec.CodecError, match=field):
         codec.decode(codec.encode(good)[:2] + codec._ENCODER.encode(fields), type(good))
+
+
+def changed(message: codec.Message, **changes: object) -> bytes:
+    """A message with other values, unchecked."""
+    fields = {name: getattr(message, name) for name in type(message).__struct_fields__} | changes
+    return codec.encode(message)[:2] + codec._ENCODER.encode(fields)
+
+
+GREEN = np.ones((3, 17), np.uint8)
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"score": 100.5}, "score"),
+        ({"score": float("nan")}, "score"),
+        ({"score_sigma": None}, "without a sigma"),
+        ({"score_sigma": -1.0}, "sigma"),
+        ({"action": "../soccer"}, "action"),
+        ({"action": ""}, "action"),
+        ({"by": "guessed"}, "by"),
+        ({"handed": "both"}, "handed"),
+        ({"cue": "late_jump"}, "among the faults"),
+        ({"praise": "stiff_knee"}, "cannot be good"),
+        ({"cue": "", "cue_certainty": 0.5}, "cue_certainty"),
+        ({"cue_certainty": float("nan")}, "cue_certainty"),
+        ({"shown": ["height"]}, "shown"),
+        ({"shown": ["balance", "balance"]}, "twice"),
+        ({"shown": ["balance", "foot_speed", "knee_flexion", "balance"]}, "shown"),
+        ({"measures": [MeasureResult("balance", 1.0, 1.0, "cm", "good")] * 2, "shown": []}, "twice"),
+        ({"keyframes_ns": (10**15, 10**15 + 2, 10**15 + 2, 10**15 + 3)}, "follow one another"),
+        ({"keyframes_ns": (10**15, 10**15 + 1, 10**15 + 2, 10**15 + 90_000_000)}, "keyframes_ns must be within"),
+        ({"keyframes_ns": (10**15 - 1, 10**15 + 1, 10**15 + 2, 10**15 + 3)}, "keyframes_ns must be within"),
+        ({"t_first_ns": 2**63 - 1}, "last frame"),
+        ({"frame_ns": 0}, "frames"),
+        ({"id": -1}, "id"),
+        ({"joints_m": np.zeros((2, 17, 3), np.float32)}, "joints_m"),
+        ({"joints_m": np.full((3, 17, 3), np.nan, np.float32)}, "joints_m"),
+        ({"states": np.zeros((0, 17), np.uint8)}, "frames"),
+        ({"states": np.full((3, 17), 3, np.uint8)}, "states"),
+        ({"colours": np.full((3, 17), 4, np.uint8)}, "colours"),
+        ({"colours": GREEN, "states": GREEN}, "grey"),
+        ({"standard_m": np.full((3, 17, 3), np.inf, np.float32)}, "standard_m"),
+        ({"standard_m": np.zeros((3, 17, 3))}, "standard_m"),
+        ({"standard_m": np.zeros((3, 17, 3), np.uint32)}, "standard_m"),
+        ({"standard_m": np.zeros((), np.float32)}, "standard_m"),
+    ],
+)
+def test_feedback_that_cannot_be_is_refused_by_the_reader(changes: dict[str, object], reason: str) -> None:
+    with pytest.raises(codec.CodecError, match=reason):
+        codec.decode(changed(feedback(), **changes), Feedback)
+
+
+def test_no_measure_without_a_value_has_a_verdict() -> None:
+    with pytest.raises(ValueError, match="verdict good"):
+        MeasureResult("balance", None, None, "cm", "good")
+    with pytest.raises(ValueError, match="exchanged"):
+        MeasureResult("balance", 1.0, 0.1, "cm", "good", low=2.0, high=1.0)
+
+
+@pytest.mark.parametrize("activity", ["Soccer", "soccer kick", "x" * 49, "a\n", None, 3])
+def test_an_activity_that_is_no_name_is_refused_by_the_reader(activity: object) -> None:
+    with pytest.raises(codec.CodecError, match="activity"):
+        codec.decode(changed(ActivityRequest(""), activity=activity), ActivityRequest)
