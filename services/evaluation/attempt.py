@@ -1,13 +1,11 @@
 """One try at an action, as it was found in the motion."""
 
 from dataclasses import dataclass
-from typing import Final, Literal, get_args
 
 from models.motions.motion import Handed
+from models.teaching.measure import PHASES, Phase
 
-Phase = Literal["start", "exertion", "peak", "end"]
-PHASES: Final[tuple[Phase, ...]] = get_args(Phase)
-"""Keyframes of an attempt in their order; `models.motions.motion.Attempt` says what each is."""
+__all__ = ["PHASES", "FoundAttempt", "Phase"]
 
 
 @dataclass(frozen=True)
