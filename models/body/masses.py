@@ -13,7 +13,7 @@ import numpy as np
 
 from models.arrays import Float
 from models.body.prior import SEXES, Sex
-from models.skeleton import coco_feet, smpl
+from models.skeleton import coco, coco_feet, smpl
 
 SEGMENTS: Final = (
     *("head", "trunk"),
@@ -45,6 +45,9 @@ _LINES: Final = {
 }
 """Segment: (from, to, share of the way for the sexes in the order of `SEXES`); two points mean their middle."""
 
+_HAND_BEYOND: Final = 0.25
+"""Of the forearm's length: 0.79 of a hand of 86 mm on a forearm of 269 mm."""
+
 
 def mass_shares(age_years: float, sex: Sex) -> Float:
     """(14,) share of each of `SEGMENTS` in the body's mass; they sum to 1. Below 6 years as at 6, from 20 years as adults."""
@@ -52,6 +55,31 @@ def mass_shares(age_years: float, sex: Sex) -> Float:
     shares = np.array([np.interp(age_years, _AGES, column) for column in table.T])
     both_sides = np.concatenate((shares[:2], np.repeat(shares[2:], 2)))
     return np.asarray(both_sides / both_sides.sum())
+
+
+def coco_shares(age_years: float, sex: Sex | None = None) -> Float:
+    """(17,) share of each COCO point in the centre of mass, where only these points are known; they sum to 1.
+
+    A hand is in line with its forearm, its centre a quarter of the forearm's length (de Leva's lengths) beyond the wrist; a foot is
+    where its ankle is. None takes the mean of the sexes.
+    """
+    return np.asarray(np.mean([_coco_shares(age_years, one) for one in (SEXES if sex is None else (sex,))], axis=0))
+
+
+def _coco_shares(age_years: float, sex: Sex) -> Float:
+    points = dict(zip(coco.NAMES, np.eye(coco.COUNT), strict=True))
+    centres = [(points["left_ear"] + points["right_ear"]) / 2]
+    for segment in SEGMENTS[1:]:
+        side, part = ("", segment) if segment in _LINES else (segment[: segment.index("_") + 1], segment[segment.index("_") + 1 :])
+        if part == "foot":
+            centres.append(points[side + "ankle"])
+        elif part == "hand":
+            centres.append(points[side + "wrist"] + _HAND_BEYOND * (points[side + "wrist"] - points[side + "elbow"]))
+        else:
+            near, far, shares = _LINES[part]
+            start, end = (np.mean([points[side + name] for name in names], axis=0) for names in (near, far))
+            centres.append(start + shares[SEXES.index(sex)] * (end - start))
+    return np.asarray(mass_shares(age_years, sex) @ np.array(centres))
 
 
 def segment_centres_m(joints_m: Float, coco_m: Float, sex: Sex) -> Float:

@@ -1,0 +1,24 @@
+"""All signals by name."""
+
+from typing import Final
+
+from models.motions.motion import Handed
+from services.evaluation.signals import angles, movement, places, trunk
+from services.evaluation.signals.posture import SideAsked
+from services.evaluation.signals.reading import Reading
+from services.evaluation.signals.series import Series
+from services.evaluation.signals.signal import Signal
+from services.evaluation.track import Track
+
+CATALOGUE: Final[dict[str, Signal]] = {
+    signal.name: signal for signal in (*angles.SIGNALS, *trunk.SIGNALS, *places.SIGNALS, *movement.SIGNALS)
+}
+
+
+def of(name: str, track: Track, side: SideAsked, lead: Handed) -> Series:
+    """A signal of a track that the network saw. To read several, make a `Reading` and ask it.
+
+    Raises:
+        KeyError: there is no such signal.
+    """
+    return Reading(track, lead).of(CATALOGUE[name], side)
