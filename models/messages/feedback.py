@@ -74,7 +74,7 @@ class MeasureResult(msgspec.Struct, frozen=True):
         name: of the measure.
         value: in `unit`; None if it could not be measured.
         sigma: one standard deviation of it; None together with it.
-        unit: as people write it ("deg", "cm", "s", "%").
+        unit: as in `models.teaching` ("deg", "cm", "pct", "m_s", "s", "deg_s").
         verdict: what a teacher would say; "unknown" if there is no value, or none that is sure enough.
         low, high: what is good lies between them; None where there is no such bound.
     """

@@ -6,7 +6,16 @@ from collections.abc import Callable
 from pathlib import Path
 
 from models.messages import codec, topics
-from models.messages.health import FusionHealth, Health, MachineHealth, RecorderHealth, ReplayHealth, State, SupervisorHealth
+from models.messages.health import (
+    EvaluationHealth,
+    FusionHealth,
+    Health,
+    MachineHealth,
+    RecorderHealth,
+    ReplayHealth,
+    State,
+    SupervisorHealth,
+)
 from models.messages.trouble import Trouble
 from models.process import Bus, Resources
 
@@ -73,6 +82,7 @@ class HealthReporter:
         machine: MachineHealth | None = None,
         replay: ReplayHealth | None = None,
         supervisor: SupervisorHealth | None = None,
+        evaluation: EvaluationHealth | None = None,
     ) -> Health:
         """Publish how this process is, and return what was published."""
         now_ns = self._clock_ns()
@@ -91,6 +101,7 @@ class HealthReporter:
             machine=machine,
             replay=replay,
             supervisor=supervisor,
+            evaluation=evaluation,
         )
         self._bus.publish(topics.health(health.process), codec.encode(health))
         return health

@@ -1,13 +1,15 @@
 """The tablets that watch: one session each, none of which can hold up another or the box."""
 
 import asyncio
+from collections import deque
 from collections.abc import Callable
 
 from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from services.tablet.attempts import KEPT
 from services.tablet.credit import CreditError, NewestFirst
-from services.tablet.messages import CLIENT_MESSAGE, Ack, Ping, Pong
+from services.tablet.messages import CLIENT_MESSAGE, Ack, Choose, Ping, Pong
 
 MOTION_CREDIT = 2
 STATUS_CREDIT = 1
@@ -15,14 +17,30 @@ MAX_CLIENTS = 50
 
 
 class Session:
-    """One connected client: two lanes to it, its acknowledgements and pings back."""
+    """One connected client: two lanes and the attempts to it; its acknowledgements, wishes and pings back.
 
-    def __init__(self, socket: WebSocket, clock_ns: Callable[[], int], reject: Callable[[], None]) -> None:
+    Args:
+        socket: that it has opened.
+        clock_ns: CLOCK_MONOTONIC.
+        reject: told of a message that cannot be understood.
+        choose: told which action pupils shall do; None for whichever it is.
+    """
+
+    def __init__(
+        self,
+        socket: WebSocket,
+        clock_ns: Callable[[], int],
+        reject: Callable[[], None],
+        choose: Callable[[str | None], None],
+    ) -> None:
         self._socket = socket
         self._clock_ns = clock_ns
         self._reject = reject
+        self._choose = choose
         self._motions: NewestFirst[bytes] = NewestFirst(MOTION_CREDIT)
         self._statuses: NewestFirst[str] = NewestFirst(STATUS_CREDIT)
+        # Each is news of its own. One that is not sent before `KEPT` newer ones came is not on the page's list any more either.
+        self._attempts: deque[str] = deque(maxlen=KEPT)
         self._ping: Ping | None = None
         self._work = asyncio.Event()
 
@@ -34,6 +52,11 @@ class Session:
     def offer_status(self, text: str) -> None:
         """Have a status sent as soon as the client has credit."""
         self._statuses.offer(text)
+        self._work.set()
+
+    def offer_attempt(self, text: str) -> None:
+        """Have an attempt sent."""
+        self._attempts.append(text)
         self._work.set()
 
     async def run(self) -> None:
@@ -55,6 +78,8 @@ class Session:
             if isinstance(message, Ack):
                 self._motions.acknowledge(message.motions)
                 self._statuses.acknowledge(message.statuses)
+            elif isinstance(message, Choose):
+                self._choose(message.activity)
             else:
                 self._ping = message
         except (ValidationError, CreditError):
@@ -79,6 +104,11 @@ class Session:
             await self._socket.send_bytes(frame)
         if (text := self._statuses.take()) is not None:
             await self._socket.send_text(text)
+        # One at a time: a page that has just opened gets its figure between the attempts of the lesson so far.
+        if self._attempts:
+            await self._socket.send_text(self._attempts.popleft())
+            if self._attempts:
+                self._work.set()
 
 
 class Audience:
@@ -112,3 +142,8 @@ class Audience:
         """Offer a status to everyone."""
         for session in self._sessions:
             session.offer_status(text)
+
+    def show_attempt(self, text: str) -> None:
+        """Have an attempt sent to everyone."""
+        for session in self._sessions:
+            session.offer_attempt(text)

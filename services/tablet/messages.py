@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
+from models.messages.feedback import Verdict
 from models.messages.trouble import CalibrationCode, MachineCode
 
 CameraState = Literal["starting", "ok", "slow", "lost", "unknown"]
@@ -104,6 +105,19 @@ class Replay(_Model):
     length_s: float | None
 
 
+class EvaluationStatus(_Model):
+    """What pupils are to do, and whether somebody does it."""
+
+    activity: Annotated[str | None, Field(description="the action that was chosen; null: whichever of them is recognised")]
+    activity_chosen_by: Annotated[
+        Literal["site", "tablet"] | None, Field(description="null: not known, since the evaluation has yet to say so")
+    ]
+    state: Annotated[
+        Literal["waiting", "moving", "unknown"],
+        Field(description="moving: an attempt seems to be under way; unknown: no pupil is seen, or the evaluation is not heard"),
+    ]
+
+
 class Status(_Model):
     """The room as a whole, about twice a second."""
 
@@ -120,6 +134,7 @@ class Status(_Model):
     cpu_load: Annotated[float | None, Field(description="share of the granted CPU that is in use, 0 to 1")]
     recording: Recording | None
     replay: Replay | None
+    evaluation: EvaluationStatus
     machine: MachineStatus | None
     calibration: Annotated[
         CalibrationCode | None, Field(description="what speaks against the calibration, or against which camera is which")
@@ -139,6 +154,77 @@ class Pong(_Model):
     box_time_us: Annotated[int, Field(description="CLOCK_MONOTONIC of the box when it answered")]
 
 
+class AttemptMeasure(_Model):
+    """One measure of an attempt."""
+
+    name: Annotated[str, Field(description="its title is in /api/teaching")]
+    value: Annotated[float | None, Field(description="null: could not be measured")]
+    sigma: Annotated[float | None, Field(description="one standard deviation; null together with the value")]
+    unit: Annotated[str, Field(description="deg, cm, pct, m_s, s or deg_s")]
+    verdict: Verdict
+    low: Annotated[float | None, Field(description="below this it is not good any more; null: there is no such bound")]
+    high: float | None
+
+
+class Attempt(_Model):
+    """An attempt that ended: sent once, and the newest of them when a page connects, the oldest first."""
+
+    type: Literal["attempt"] = "attempt"
+    id: Annotated[int, Field(description="its replay is at /api/attempts/{id}/replay as long as the attempt is listed")]
+    action: str
+    by: Annotated[Literal["recognised", "chosen"], Field(description="how it is known what was tried")]
+    handed: Literal["right", "left"]
+    ended_ms: Annotated[int, Field(description="when it ended: milliseconds on the clock of `Status.box_time_us`")]
+    duration_s: float
+    score: Annotated[float | None, Field(description="0 to 100; null: too little was seen")]
+    score_sigma: float | None
+    cue: Annotated[str | None, Field(description="the fault to correct; its words are in /api/teaching")]
+    cue_certainty: Annotated[float | None, Field(description="0 to 1; null without a cue")]
+    praise: Annotated[str | None, Field(description="the fault whose point was good; its words are in /api/teaching")]
+    measures: Annotated[list[AttemptMeasure], Field(description="at most three, in the order in which they are shown")]
+
+
+Words = Annotated[dict[str, str], Field(description="the same in every language, by its code")]
+
+
+class FaultWords(_Model):
+    """What is said about a fault."""
+
+    cue: Annotated[Words, Field(description="what to do")]
+    praise: Annotated[Words, Field(description="what is said when just this was good")]
+
+
+class MeasureWords(_Model):
+    """What a measure is called."""
+
+    title: Words
+    unit: str
+
+
+class ActionWords(_Model):
+    """The words of one action."""
+
+    title: Words
+    faults: dict[str, FaultWords]
+    measures: dict[str, MeasureWords]
+
+
+class Teaching(_Model):
+    """Everything that is said about attempts, in all languages, and what can be chosen."""
+
+    languages: Annotated[list[str], Field(description="codes; the site's own language is the first")]
+    actions: Annotated[dict[str, ActionWords], Field(description="by the action's name")]
+
+
+class Choose(_Model):
+    """What pupils shall do from now on."""
+
+    type: Literal["choose"]
+    activity: Annotated[
+        Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,47}$")] | None, Field(description="an action; null: whichever it is")
+    ]
+
+
 class Ping(_Model):
     """The page measures the way to the box and back; only the newest is answered."""
 
@@ -154,6 +240,6 @@ class Ack(_Model):
     statuses: Annotated[int, Field(ge=0, lt=2**53)]
 
 
-ClientMessage = Annotated[Ack | Ping, Field(discriminator="type")]
+ClientMessage = Annotated[Ack | Choose | Ping, Field(discriminator="type")]
 
-CLIENT_MESSAGE: TypeAdapter[Ack | Ping] = TypeAdapter(ClientMessage)
+CLIENT_MESSAGE: TypeAdapter[Ack | Choose | Ping] = TypeAdapter(ClientMessage)

@@ -14,6 +14,7 @@ from models.config.site import TabletConfig
 from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.addressed import read_health
+from models.messages.feedback import Feedback
 from models.messages.motion import Motion
 from models.messages.trouble import messages_refused
 from models.process import Delivery, ProcessContext, Subscription
@@ -104,7 +105,7 @@ async def _serve(context: ProcessContext, server: TabletServer, listener: socket
         if not part.cancelled() and (error := part.exception()) is not None:
             log.error("a part of the server failed", part=part.get_name(), error=repr(error))
 
-    subscription = context.bus.subscribe(topics.motion("live"), topics.ALL_HEALTH, keep=_KEEP)
+    subscription = context.bus.subscribe(topics.motion("live"), topics.feedback(), topics.ALL_HEALTH, keep=_KEEP)
     context.bus.watch_alive(topics.ALL_ALIVE, seen)
     context.bus.declare_alive(topics.alive(context.name))
     receiver = asyncio.create_task(asyncio.to_thread(_receive, context, subscription, server, hand_over), name="bus")
@@ -147,6 +148,9 @@ def decoded(delivery: Delivery, server: TabletServer) -> Callable[[], None]:
         if delivery.topic == topics.motion("live"):
             motion = codec.decode(delivery.payload, Motion)
             return lambda: server.receive_motion(motion)
+        if delivery.topic == topics.feedback():
+            feedback = codec.decode(delivery.payload, Feedback)
+            return lambda: server.receive_feedback(feedback)
         health = read_health(delivery.topic, delivery.payload)
         return lambda: server.receive_health(health)
     except codec.CodecError:

@@ -6,13 +6,24 @@ Reads no clock: every method is told the time, so that each state can be tested 
 import math
 from collections import deque
 
-from models.messages.health import Health, Restarts, SupervisorHealth
+from models.messages.feedback import ANY
+from models.messages.health import EvaluationHealth, Health, Restarts, SupervisorHealth
 from models.messages.motion import JointState, Motion
 from models.messages.trouble import CALIBRATION_CODES, MACHINE_CODES, CalibrationCode
-from models.process import EDGE, RECORDER, REPLAY, ROUTER, Playback, process_name
+from models.process import EDGE, EVALUATION, RECORDER, REPLAY, ROUTER, Playback, process_name
 from services.support.machine_troubles import machine_troubles
 from services.tablet.camera_state import SILENT_AFTER_NS, HeardHealth, camera_status, known
-from services.tablet.messages import CameraStatus, Latency, MachineStatus, ProcessState, ProcessStatus, Recording, Replay, Status
+from services.tablet.messages import (
+    CameraStatus,
+    EvaluationStatus,
+    Latency,
+    MachineStatus,
+    ProcessState,
+    ProcessStatus,
+    Recording,
+    Replay,
+    Status,
+)
 from services.tablet.presence import Presences
 
 WINDOW_NS = 3_000_000_000
@@ -71,7 +82,16 @@ class RoomState:
         self._cameras = cameras
         self._wished_hz = wished_hz
         self._playback = playback
-        self._processes = {ROUTER, RECORDER, REPLAY, "tablet", "supervisor", *(process_name(EDGE, name) for name in cameras)}
+        self._evaluation: EvaluationHealth | None = None
+        self._processes = {
+            ROUTER,
+            EVALUATION,
+            RECORDER,
+            REPLAY,
+            "tablet",
+            "supervisor",
+            *(process_name(EDGE, name) for name in cameras),
+        }
         self._health: dict[str, HeardHealth] = {}
         self._router = ROUTER if playback is None else REPLAY
         self._presences = Presences(self._router, started_ns)
@@ -92,9 +112,16 @@ class RoomState:
             self.rejected_bus_messages += 1
             return
         self._health[health.process] = HeardHealth(health, now_ns)
+        self._evaluation = health.evaluation or self._evaluation
         restarts = self._restarts(self._router)
         if health.process == "supervisor" and restarts is not None and restarts.given_up:
             self._presences.note_stand_in(now_ns)  # It would not be heard if it did not route.
+
+    @property
+    def asked(self) -> tuple[str, str] | None:
+        """Which action pupils are to do and whose word that was, as the evaluation last said; None if it never did."""
+        evaluation = self._evaluation
+        return (evaluation.activity, evaluation.chosen_by) if evaluation is not None else None
 
     def set_alive(self, process: str, alive: bool, now_ns: int) -> None:
         """A process joined or left the bus."""
@@ -123,6 +150,7 @@ class RoomState:
             calibration=_calibration(fusion_health),
             recording=self._recording(now_ns),
             replay=self._replay(now_ns),
+            evaluation=self._evaluates(now_ns),
             cameras=[self._camera(name, name in used, now_ns) for name in self._cameras],
             processes=[self._process(heard, now_ns) for _, heard in sorted(self._health.items())],
             clients=clients,
@@ -171,6 +199,16 @@ class RoomState:
             speed=self._playback.speed,
             position_s=known(heard.position_s) if heard else None,
             length_s=known(heard.length_s) if heard else None,
+        )
+
+    def _evaluates(self, now_ns: int) -> EvaluationStatus:
+        # What was asked for stays so while the evaluation is started again, but what the pupil does is not known then.
+        asked, health = self._evaluation, self._said(EVALUATION, now_ns)
+        heard = health.evaluation if health else None
+        return EvaluationStatus(
+            activity=asked.activity if asked is not None and asked.activity != ANY else None,
+            activity_chosen_by=asked.chosen_by if asked is not None else None,
+            state=heard.state if heard is not None else "unknown",
         )
 
     def _process(self, heard: HeardHealth, now_ns: int) -> ProcessStatus:

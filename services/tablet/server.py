@@ -10,11 +10,14 @@ from fastapi import FastAPI, Request, Response, WebSocket
 from fastapi.staticfiles import StaticFiles
 from pydantic.json_schema import models_json_schema
 
+from models.messages.feedback import ANY, ActivityRequest, Feedback
 from models.messages.health import Health
 from models.messages.motion import Motion
-from services.tablet import metrics, motion_frame
+from models.process import EVALUATION
+from services.tablet import metrics, motion_frame, teaching_routes
+from services.tablet.attempts import Attempts
 from services.tablet.audience import Audience, Session
-from services.tablet.messages import Ack, Ping, Pong, Status
+from services.tablet.messages import Ack, Attempt, Choose, Ping, Pong, Status, Teaching
 from services.tablet.room_state import RoomState
 
 STATUS_PERIOD_S = 0.5
@@ -31,12 +34,32 @@ _POLICY_VIOLATION = 1008
 _TRY_AGAIN_LATER = 1013
 
 
-class TabletServer:
-    """The room's state and the clients that watch it, joined. Used from the event loop's thread only."""
+NOTHING_TAUGHT = Teaching(languages=[], actions={})
 
-    def __init__(self, room: RoomState, clock_ns: Callable[[], int]) -> None:
+
+class TabletServer:
+    """The room's state and the clients that watch it, joined. Used from the event loop's thread only.
+
+    Args:
+        room: its state.
+        clock_ns: CLOCK_MONOTONIC.
+        teaching: what can be chosen, and the words of it.
+        ask: takes a choice to the evaluation.
+    """
+
+    def __init__(
+        self,
+        room: RoomState,
+        clock_ns: Callable[[], int],
+        teaching: Teaching = NOTHING_TAUGHT,
+        ask: Callable[[ActivityRequest], None] = lambda _: None,
+    ) -> None:
         self.room = room
         self.audience = Audience()
+        self.attempts = Attempts()
+        self.teaching = teaching
+        self._ask = ask
+        self._chosen: ActivityRequest | None = None
         self._clock_ns = clock_ns
         self._soon: asyncio.TimerHandle | None = None
 
@@ -52,12 +75,31 @@ class TabletServer:
         self.audience.show_motion(frame)
 
     def receive_health(self, health: Health) -> None:
-        """A process said how it is."""
+        """A process said how it is. Which action is asked for is shown at once: somebody is waiting for it."""
+        asked = self.room.asked
         self.room.receive_health(health, self._clock_ns())
+        if self.room.asked != asked:
+            self.show_status()
+
+    def receive_feedback(self, feedback: Feedback) -> None:
+        """An attempt ended: keep it and show it to everyone."""
+        attempt = self.attempts.take(feedback)
+        if attempt is not None:
+            self.audience.show_attempt(attempt.model_dump_json())
+
+    def choose(self, activity: str | None) -> None:
+        """A tablet says what pupils shall do; None for whichever it is."""
+        if activity is not None and activity not in self.teaching.actions:
+            self._reject_client_message()
+            return
+        self._chosen = ActivityRequest(activity or ANY)
+        self._ask(self._chosen)
 
     def set_alive(self, process: str, alive: bool) -> None:
         """A process joined or left the bus. Everyone is told soon: an outage may end before the next status is due."""
         self.room.set_alive(process, alive, self._clock_ns())
+        if process == EVALUATION and alive and self._chosen is not None:
+            self._ask(self._chosen)  # It was started again, and begins with what the site file says.
         if self._soon is None:
             self._soon = asyncio.get_running_loop().call_later(TOGETHER_S, self._show_presence)
 
@@ -75,7 +117,7 @@ class TabletServer:
 
     def session(self, socket: WebSocket) -> Session:
         """A session for a client whose malformed messages are counted here."""
-        return Session(socket, self._clock_ns, self._reject_client_message)
+        return Session(socket, self._clock_ns, self._reject_client_message, self.choose)
 
     def show_status(self) -> None:
         """Show the room's state to everyone."""
@@ -131,6 +173,8 @@ def create_app(server: TabletServer, page: Path | None) -> FastAPI:
         """The room in Prometheus's text format, see docs/metrics.md."""
         return Response(metrics.render(server), media_type=metrics.CONTENT_TYPE)
 
+    app.include_router(teaching_routes.routes(server.attempts, server.teaching))
+
     @app.websocket("/ws")
     async def watch(socket: WebSocket) -> None:
         if not _same_origin(socket):
@@ -142,6 +186,8 @@ def create_app(server: TabletServer, page: Path | None) -> FastAPI:
             return
         session = server.session(socket)
         session.offer_status(server.status().model_dump_json())
+        for attempt in server.attempts.shown:
+            session.offer_attempt(attempt.model_dump_json())
         await server.audience.attend(session)
 
     if page is not None:
@@ -165,7 +211,9 @@ def _describe_socket(app: FastAPI) -> None:
         modes: list[tuple[type[Any], Any]] = [
             (Status, "serialization"),
             (Pong, "serialization"),
+            (Attempt, "serialization"),
             (Ack, "validation"),
+            (Choose, "validation"),
             (Ping, "validation"),
         ]
         _, definitions = models_json_schema(modes, ref_template="#/components/schemas/{model}")

@@ -54,7 +54,7 @@ def feedback() -> Feedback:
         ),
         measures=(
             MeasureResult("knee_flexion", 21.5, 4.5, "deg", "poor", low=60.0),
-            MeasureResult("foot_speed", 9.25, 0.5, "m/s", "fair", low=8.0, high=14.0),
+            MeasureResult("foot_speed", 9.25, 0.5, "m_s", "fair", low=8.0, high=14.0),
             MeasureResult("balance", None, None, "cm", "unknown"),
         ),
         shown=("foot_speed", "knee_flexion"),

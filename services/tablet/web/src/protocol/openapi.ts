@@ -24,10 +24,193 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/teaching": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Teaching
+         * @description What can be chosen, and what is said about it, in every language.
+         */
+        get: operations["read_teaching_api_teaching_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/attempts": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Attempts
+         * @description The newest attempts, the oldest of them first.
+         */
+        get: operations["read_attempts_api_attempts_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/attempts/{attempt_id}/replay": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Replay
+         * @description One attempt, frame by frame, in the binary layout of `services/tablet/attempt_replay.py`.
+         */
+        get: operations["read_replay_api_attempts__attempt_id__replay_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
 }
 export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
+        /**
+         * ActionWords
+         * @description The words of one action.
+         */
+        ActionWords: {
+            /**
+             * Title
+             * @description the same in every language, by its code
+             */
+            title: {
+                [key: string]: string;
+            };
+            /** Faults */
+            faults: {
+                [key: string]: components["schemas"]["FaultWords"];
+            };
+            /** Measures */
+            measures: {
+                [key: string]: components["schemas"]["MeasureWords"];
+            };
+        };
+        /**
+         * Attempt
+         * @description An attempt that ended: sent once, and the newest of them when a page connects, the oldest first.
+         */
+        Attempt: {
+            /**
+             * Type
+             * @default attempt
+             * @constant
+             */
+            type: "attempt";
+            /**
+             * Id
+             * @description its replay is at /api/attempts/{id}/replay as long as the attempt is listed
+             */
+            id: number;
+            /** Action */
+            action: string;
+            /**
+             * By
+             * @description how it is known what was tried
+             * @enum {string}
+             */
+            by: "recognised" | "chosen";
+            /**
+             * Handed
+             * @enum {string}
+             */
+            handed: "right" | "left";
+            /**
+             * Ended Ms
+             * @description when it ended: milliseconds on the clock of `Status.box_time_us`
+             */
+            ended_ms: number;
+            /** Duration S */
+            duration_s: number;
+            /**
+             * Score
+             * @description 0 to 100; null: too little was seen
+             */
+            score: number | null;
+            /** Score Sigma */
+            score_sigma: number | null;
+            /**
+             * Cue
+             * @description the fault to correct; its words are in /api/teaching
+             */
+            cue: string | null;
+            /**
+             * Cue Certainty
+             * @description 0 to 1; null without a cue
+             */
+            cue_certainty: number | null;
+            /**
+             * Praise
+             * @description the fault whose point was good; its words are in /api/teaching
+             */
+            praise: string | null;
+            /**
+             * Measures
+             * @description at most three, in the order in which they are shown
+             */
+            measures: components["schemas"]["AttemptMeasure"][];
+        };
+        /**
+         * AttemptMeasure
+         * @description One measure of an attempt.
+         */
+        AttemptMeasure: {
+            /**
+             * Name
+             * @description its title is in /api/teaching
+             */
+            name: string;
+            /**
+             * Value
+             * @description null: could not be measured
+             */
+            value: number | null;
+            /**
+             * Sigma
+             * @description one standard deviation; null together with the value
+             */
+            sigma: number | null;
+            /**
+             * Unit
+             * @description deg, cm, pct, m_s, s or deg_s
+             */
+            unit: string;
+            /**
+             * Verdict
+             * @enum {string}
+             */
+            verdict: "good" | "fair" | "poor" | "unknown";
+            /**
+             * Low
+             * @description below this it is not good any more; null: there is no such bound
+             */
+            low: number | null;
+            /** High */
+            high: number | null;
+        };
         /**
          * CameraStatus
          * @description One camera of the room, in the order of the site file. Null is: not known.
@@ -75,6 +258,53 @@ export interface components {
             used: boolean;
         };
         /**
+         * EvaluationStatus
+         * @description What pupils are to do, and whether somebody does it.
+         */
+        EvaluationStatus: {
+            /**
+             * Activity
+             * @description the action that was chosen; null: whichever of them is recognised
+             */
+            activity: string | null;
+            /**
+             * Activity Chosen By
+             * @description null: not known, since the evaluation has yet to say so
+             */
+            activity_chosen_by: ("site" | "tablet") | null;
+            /**
+             * State
+             * @description moving: an attempt seems to be under way; unknown: no pupil is seen, or the evaluation is not heard
+             * @enum {string}
+             */
+            state: "waiting" | "moving" | "unknown";
+        };
+        /**
+         * FaultWords
+         * @description What is said about a fault.
+         */
+        FaultWords: {
+            /**
+             * Cue
+             * @description what to do
+             */
+            cue: {
+                [key: string]: string;
+            };
+            /**
+             * Praise
+             * @description what is said when just this was good
+             */
+            praise: {
+                [key: string]: string;
+            };
+        };
+        /** HTTPValidationError */
+        HTTPValidationError: {
+            /** Detail */
+            detail?: components["schemas"]["ValidationError"][];
+        };
+        /**
          * Latency
          * @description Age in milliseconds of the figure when the server received it: since the instant that it shows.
          */
@@ -117,6 +347,21 @@ export interface components {
              * @description what is wrong, worst first
              */
             troubles: ("disk_full" | "disk_low" | "memory_low" | "hot" | "throttled" | "clock_set")[];
+        };
+        /**
+         * MeasureWords
+         * @description What a measure is called.
+         */
+        MeasureWords: {
+            /**
+             * Title
+             * @description the same in every language, by its code
+             */
+            title: {
+                [key: string]: string;
+            };
+            /** Unit */
+            unit: string;
         };
         /**
          * ProcessStatus
@@ -243,6 +488,7 @@ export interface components {
             cpu_load: number | null;
             recording: components["schemas"]["Recording"] | null;
             replay: components["schemas"]["Replay"] | null;
+            evaluation: components["schemas"]["EvaluationStatus"];
             machine: components["schemas"]["MachineStatus"] | null;
             /**
              * Calibration
@@ -261,6 +507,37 @@ export interface components {
             rejected_client_messages: number;
         };
         /**
+         * Teaching
+         * @description Everything that is said about attempts, in all languages, and what can be chosen.
+         */
+        Teaching: {
+            /**
+             * Languages
+             * @description codes; the site's own language is the first
+             */
+            languages: string[];
+            /**
+             * Actions
+             * @description by the action's name
+             */
+            actions: {
+                [key: string]: components["schemas"]["ActionWords"];
+            };
+        };
+        /** ValidationError */
+        ValidationError: {
+            /** Location */
+            loc: (string | number)[];
+            /** Message */
+            msg: string;
+            /** Error Type */
+            type: string;
+            /** Input */
+            input?: unknown;
+            /** Context */
+            ctx?: Record<string, never>;
+        };
+        /**
          * Ack
          * @description What the page has dealt with since it connected: motions drawn (or dropped as too old), and states shown.
          */
@@ -274,6 +551,22 @@ export interface components {
             motions: number;
             /** Statuses */
             statuses: number;
+        };
+        /**
+         * Choose
+         * @description What pupils shall do from now on.
+         */
+        Choose: {
+            /**
+             * Type
+             * @constant
+             */
+            type: "choose";
+            /**
+             * Activity
+             * @description an action; null: whichever it is
+             */
+            activity: string | null;
         };
         /**
          * Ping
@@ -332,6 +625,84 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Status"];
+                };
+            };
+        };
+    };
+    read_teaching_api_teaching_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Teaching"];
+                };
+            };
+        };
+    };
+    read_attempts_api_attempts_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Attempt"][];
+                };
+            };
+        };
+    };
+    read_replay_api_attempts__attempt_id__replay_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                attempt_id: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": string;
+                };
+            };
+            /** @description not kept (any more) */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
                 };
             };
         };
