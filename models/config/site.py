@@ -82,6 +82,30 @@ class FusionConfig(Section, frozen=True):
     live_hz: Annotated[float, Meta(ge=30, le=60, description="fused poses a second")] = 30.0
 
 
+class EvaluationConfig(Section, frozen=True):
+    """What is said of attempts."""
+
+    activity: Annotated[
+        str,
+        Meta(
+            pattern=r"^[a-z][a-z0-9_]{0,39}\Z",
+            description="what pupils do when the box starts, until a tablet says otherwise: an action's name, such as "
+            "`basketball_shot`; any: whichever it is",
+        ),
+    ] = "any"
+    language: Annotated[
+        Literal["en", "zh", "de", "es"],
+        Meta(description="of the page, for a tablet that speaks none of these languages, and of reports"),
+    ] = "en"
+    teaching: Annotated[
+        str,
+        Meta(
+            description="a folder of this school's own, relative to the data folder: what is in its `actions` and `standards` "
+            "counts in the place of what KineBox brings; empty: none"
+        ),
+    ] = ""
+
+
 class LessonsConfig(Section, frozen=True):
     """Recorded lessons: what the cameras saw as keypoints, never pictures; 2 to 3.5 MB a minute with four cameras."""
 
@@ -152,6 +176,7 @@ class Site(Section, frozen=True):
     tablet: TabletConfig = TabletConfig()
     inference: InferenceConfig = InferenceConfig()
     fusion: FusionConfig = FusionConfig()
+    evaluation: EvaluationConfig = EvaluationConfig()
     supervisor: SupervisorConfig = SupervisorConfig()
     lessons: LessonsConfig = LessonsConfig()
     logs: LogsConfig = LogsConfig()
