@@ -3,7 +3,7 @@
 from typing import Final
 
 from models.motions.motion import Handed
-from services.evaluation.signals import angles, movement, places, trunk
+from services.evaluation.signals import angles, feet, movement, places, trunk
 from services.evaluation.signals.posture import SideAsked
 from services.evaluation.signals.reading import Reading
 from services.evaluation.signals.series import Series
@@ -11,7 +11,7 @@ from services.evaluation.signals.signal import Signal
 from services.evaluation.track import Track
 
 CATALOGUE: Final[dict[str, Signal]] = {
-    signal.name: signal for signal in (*angles.SIGNALS, *trunk.SIGNALS, *places.SIGNALS, *movement.SIGNALS)
+    signal.name: signal for signal in (*angles.SIGNALS, *trunk.SIGNALS, *places.SIGNALS, *feet.SIGNALS, *movement.SIGNALS)
 }
 
 
