@@ -47,10 +47,12 @@ test: setup $(FILMS) ## All tests but the four suites below: unit, property, gol
 	$(PYTHON) -m pytest -n 4 --dist loadfile # many tests wait, for processes and deadlines
 
 check: $(VENV)/.ready ## Formatting, types, import boundaries and the fast tests; under a minute
-	@$(MAKE) --no-print-directory lint
+	@$(MAKE) --no-print-directory --jobs=2 --output-sync=line lint fast-tests # the type checker leaves cores idle
+
+.PHONY: lint fast-tests
+fast-tests: $(VENV)/.ready
 	$(PYTHON) -m pytest -q -n 2 --dist loadfile -m "not slow and not browser"
 
-.PHONY: lint
 lint: $(VENV)/.ready
 	ruff format --check .
 	ruff check .

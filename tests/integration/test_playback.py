@@ -143,6 +143,7 @@ def test_a_loop_begins_again_with_the_same_figure(lesson: Path) -> None:
     assert difference(moved(first, second.t_ns - first.t_ns, 0), second) == ""
 
 
+@pytest.mark.slow
 def test_a_lesson_without_an_entry_is_no_reason_to_spin_or_to_fall_silent(tmp_path: Path) -> None:
     empty = LessonWriter.create(tmp_path, "empty", gym_header(GYM)).finish()
     beats = 0

@@ -120,6 +120,7 @@ def test_statuses_wait_for_an_answer_too(room: Room) -> None:
         assert next_json(client, "status")["box_time_us"] > first["box_time_us"] + 2_000_000, "the ones between were replaced"
 
 
+@pytest.mark.slow
 def test_many_clients_each_see_every_step_forward(room: Room) -> None:
     seen: queue.Queue[list[int]] = queue.Queue()
 

@@ -1,5 +1,6 @@
 """Laws of newest-first delivery, over every order of offering, sending and acknowledging."""
 
+import pytest
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
@@ -44,4 +45,4 @@ class Lane(RuleBasedStateMachine):
         assert 0 <= self.offered - self.lane.sent - self.lane.replaced <= 1
 
 
-TestLane = Lane.TestCase
+TestLane = pytest.mark.slow(Lane.TestCase)

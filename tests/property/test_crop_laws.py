@@ -29,6 +29,7 @@ def test_to_the_picture_and_back(crop: Crop, point: Float) -> None:
     assert crop.to_crop(crop.to_image(point)) == pytest.approx(point, abs=1e-9)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=40)
 @given(crop=crops, point=unit_points, network_px=st.sampled_from([192, 256]))
 def test_a_spot_is_seen_where_it_is_at_every_reduction(crop: Crop, point: Float, network_px: int) -> None:

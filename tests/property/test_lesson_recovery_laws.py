@@ -87,6 +87,7 @@ def test_a_recovered_lesson_is_a_whole_file_and_can_be_gone_on_with(folder: Path
     assert parts[-1].gap == "the recorder was started again"
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(at=st.integers(0, len(written().data) - 1), flip=st.integers(1, 255))
 def test_a_changed_byte_is_noticed_or_does_not_matter(folder: Path, at: int, flip: int) -> None:
@@ -106,6 +107,7 @@ def test_a_changed_byte_is_noticed_or_does_not_matter(folder: Path, at: int, fli
     assert at >= written().stages[-1].end, "a change of the data was not noticed"
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(at=st.integers(0, len(written().data) - 1), flip=st.integers(1, 255), cut=st.integers(0, 400))
 def test_recovery_of_a_changed_file_keeps_all_before_the_change_and_the_changed_file(at: int, flip: int, cut: int) -> None:

@@ -84,6 +84,7 @@ def _lowest(body: Body, pose: Pose, joints: tuple[int, ...]) -> float:
     return float(body.vertices_m(pose)[np.isin(carrier, joints), 2].min())
 
 
+@pytest.mark.slow
 @given(hip=st.tuples(st.floats(-0.3, 0.3), st.floats(-0.2, 0.2), st.floats(0.4, 1.0)), pitch=st.floats(-20, 50))
 @settings(max_examples=25)
 def test_a_leg_whose_foot_is_held_puts_it_there_or_raises_its_heel(hip: tuple[float, float, float], pitch: float) -> None:

@@ -67,6 +67,7 @@ def test_a_line_that_is_read_says_what_was_written(record: LogRecord) -> None:
     assert decode(encode(record)) == record
 
 
+@pytest.mark.slow
 @given(st.lists(st.integers(0, 400), max_size=60), st.integers(2, 5))
 def test_a_log_keeps_its_bound_and_its_newest_lines_in_order(sizes: list[int], max_files: int) -> None:
     with tempfile.TemporaryDirectory() as name:
@@ -106,6 +107,7 @@ def is_wanted(said: dict[str, Any], query: Query) -> bool:
     )
 
 
+@pytest.mark.slow
 @given(st.lists(RECORDS, max_size=30), queries(), st.integers(0, 40))
 def test_a_filter_over_several_files_finds_what_a_naive_one_finds(records: list[LogRecord], query: Query, most: int) -> None:
     with tempfile.TemporaryDirectory() as name:
@@ -123,6 +125,7 @@ def test_a_filter_over_several_files_finds_what_a_naive_one_finds(records: list[
         reader.close()
 
 
+@pytest.mark.slow
 @given(st.lists(RECORDS.map(encode).map(bytes.rstrip) | DAMAGED, max_size=12), st.booleans())
 def test_a_damaged_log_is_shown_whole_and_never_a_traceback(lines: list[bytes], torn: bool) -> None:
     with tempfile.TemporaryDirectory() as name:
@@ -137,6 +140,7 @@ def test_a_damaged_log_is_shown_whole_and_never_a_traceback(lines: list[bytes], 
             assert ("damaged" in said) == (line.record is None)
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(RECORDS, st.booleans()), min_size=1, max_size=12), queries())
 def test_a_damaged_line_is_left_out_by_its_text_and_the_time_before_it_only(
     lines: list[tuple[LogRecord, bool]], query: Query

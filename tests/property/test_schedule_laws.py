@@ -23,6 +23,7 @@ def plan(rate_hz: float, offset_ns: int) -> ViewControl:
     return ViewControl("cam01", 1, 0, rate_hz, offset_ns, "thunder", True, None)
 
 
+@pytest.mark.slow
 @given(start=instants, rate=st.sampled_from([30.0, 15.0, 10.0, 5.0]), number=st.integers(0, 10**6), position=st.integers(0, 3))
 def test_a_source_of_30_hz_is_inferred_exactly_at_the_rate_of_the_plan(start: int, rate: float, number: int, position: int) -> None:
     schedule = Schedule(start, 0, 30.0)

@@ -80,6 +80,7 @@ def test_whatever_a_file_says_its_migration_loses_no_value_and_the_second_change
     assert new["version"] == (SITE_VERSION if type(version) is int and version == 1 else version)
 
 
+@pytest.mark.slow
 @given(site_texts())
 def test_a_migrated_file_says_the_same_keeps_its_comments_and_loads_or_names_its_key(text: str) -> None:
     old = tomllib.loads(text)

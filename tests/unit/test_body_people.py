@@ -76,6 +76,7 @@ def test_ages_between_the_tables_rows_are_between_them_and_others_are_refused() 
             prior.likely(age)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(5))
 def test_both_resolutions_are_the_same_person(seed: int) -> None:
     shape = someone(body_model(), seed)

@@ -213,6 +213,7 @@ FAULTS = st.lists(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(FAULTS)
 def test_whatever_a_camera_does_what_is_passed_on_is_new_and_of_a_possible_time(faults: list[FaultConfig]) -> None:

@@ -48,6 +48,7 @@ def test_half_the_error_is_a_margin_of_fifty_percent() -> None:
     assert margin_pct(10.0, 20.0) == pytest.approx(50.0)
 
 
+@pytest.mark.slow
 def test_aligned_frames_are_of_one_instant_and_free_ones_of_the_mean_of_their_exposures() -> None:
     aligned, free = (make_clip("walk", 1, aligned=value) for value in (True, False))
     assert np.array_equal(aligned.times_ns[:3] - T0_NS, [0, 33333333, 66666667])

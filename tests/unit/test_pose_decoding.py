@@ -58,6 +58,7 @@ def decoded(given_heads: Heads) -> PoseEstimate:
     return decode_pose(*given_heads, SPREAD)
 
 
+@pytest.mark.slow
 @given(x=st.floats(26, 38), y=st.floats(26, 38))
 def test_joints_come_out_where_they_are_between_the_cells(x: float, y: float) -> None:
     estimate = decoded(heads([(x, y)]))

@@ -83,6 +83,7 @@ def test_every_marker_of_a_set_is_known_and_on_the_skin_of_its_side(model, names
             assert (place[1] > 0) == (name[0] == "L"), name
 
 
+@pytest.mark.slow
 def test_a_fit_gives_shape_and_pose_back() -> None:
     body, poses, markers = recording(PLUG_IN_GAIT, 0.6, seed=3)
     found = fitted(markers)

@@ -69,6 +69,7 @@ def test_the_baseline_finds_both_people_exactly_where_nothing_is_wrong() -> None
         assert min(np.abs(person - truth).max() for person in persons) < 1e-6
 
 
+@pytest.mark.slow
 def test_ours_follows_both_people_with_the_lag_that_it_says_and_nothing_from_the_future() -> None:
     frames = [[group(view) for view in scene(k / 25)] for k in range(40)]
     whole = follow(Views.of(RIG), frames)

@@ -109,6 +109,7 @@ def test_hair_lies_outside_the_head_and_leaves_the_face_free(style: Style) -> No
         assert np.linalg.norm((shell.vertices_m - point)[ahead][:, 1:], axis=1).min(initial=1.0) > 0.02
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("split", SPLITS)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_shoes_and_nothing_else_stand_on_the_floor(split: Split, seed: int) -> None:
@@ -133,6 +134,7 @@ def test_an_avatars_truth_is_its_bodys_at_every_time() -> None:
         assert avatar.coco_m(t_s) == pytest.approx(one.subject.body.coco_m(motion.pose(0)), abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("split", SPLITS)
 def test_surfaces_are_whole_and_a_seed_gives_the_same_twice(split: Split) -> None:
     one, surface = member(split, 0), dressed(split, 0).surface

@@ -128,6 +128,7 @@ except UserError as error:
 """
 
 
+@pytest.mark.slow
 def test_a_disc_without_room_leaves_the_file_and_nothing_else(old: Path) -> None:
     before = old.read_bytes()
     result = subprocess.run([sys.executable, "-c", FULL_DISK, str(old)], cwd=ROOT, capture_output=True, text=True, check=True)

@@ -22,7 +22,8 @@ def camera_looking(name: str, degrees: float) -> Camera:
 
 
 def specs_of(rig: Rig) -> list[ChildSpec]:
-    return [ChildSpec("fusion"), *(ChildSpec("edge", name) for name in rig.names), ChildSpec("tablet"), ChildSpec("recorder")]
+    others = [ChildSpec(name) for name in ("tablet", "evaluation", "recorder")]
+    return [ChildSpec("fusion"), *(ChildSpec("edge", name) for name in rig.names), *others]
 
 
 def cameras_first(degrees: Sequence[float]) -> set[str]:
@@ -43,8 +44,8 @@ def test_a_site_with_no_more_than_two_cameras_starts_them_all_at_once(degrees: S
 
 
 def test_a_replay_starts_whole() -> None:
-    specs = [ChildSpec("replay"), ChildSpec("tablet")]
-    assert first(specs, rig_looking((0, 90, 180))) == {"replay", "tablet"}
+    specs = [ChildSpec("replay"), ChildSpec("tablet"), ChildSpec("evaluation")]
+    assert first(specs, rig_looking((0, 90, 180))) == {"replay", "tablet", "evaluation"}
 
 
 def test_the_others_start_when_the_first_have_been_at_work_for_a_while_and_not_sooner() -> None:

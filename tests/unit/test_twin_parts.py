@@ -180,6 +180,7 @@ def test_the_nearest_are_those_that_sorting_gives() -> None:
         assert (best[:held] == order).all()
 
 
+@pytest.mark.slow
 def test_points_between_samples_and_of_late_rows_are_where_they_were() -> None:
     performer = PlainPerformer(1.5, PERSON.joints)
     sampled = Sampled((performer,), 0.0, 2.0)
