@@ -1,0 +1,114 @@
+"""Where the pupil stands, how he is turned, how tall he is and which side he leads with: taken out, so that motions compare.
+
+What is compared lies in the canonical frame of `models.teaching.standard`: right-handed, x to where the pupil looked as he began,
+y to his left, z up from the floor; the middle of the hips always above the origin; as large as the standard; leading with the
+right side.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from models.arrays import Float
+from models.motions.motion import Handed
+from models.skeleton import coco
+from services.evaluation.track import Track
+
+_LEFT_SHOULDER, _RIGHT_SHOULDER, _LEFT_HIP, _RIGHT_HIP = coco.TRUNK
+_MIRROR: Final = list(coco.MIRROR)
+_FLIP: Final = np.array((1.0, -1.0, 1.0))
+UPRIGHT: Final = 0.5
+"""How far up the trunk must point, as the cosine of its inclination, for its turn about the vertical to be told."""
+BEGINNING_S: Final = 0.3
+"""The pupil's heading is that of so much of the beginning of an attempt."""
+_CHAIN: Final = (("hip", "shoulder"), ("knee", "hip"), ("ankle", "knee"))
+_SIDES: Final = ("left", "right")
+
+
+@dataclass(frozen=True)
+class Placing:
+    """How a motion is brought into the canonical frame: turned by -`heading_rad` about the vertical, then scaled.
+
+    Attributes:
+        heading_rad: to where the pupil looked in the world, from x to y.
+        scale: canonical metres a metre of the world.
+    """
+
+    heading_rad: float
+    scale: float
+
+    @property
+    def matrix(self) -> Float:
+        """(3, 3) what a difference of places in the world is multiplied with; covariances from both sides."""
+        sine, cosine = np.sin(self.heading_rad), np.cos(self.heading_rad)
+        return self.scale * np.array(((cosine, sine, 0.0), (-sine, cosine, 0.0), (0.0, 0.0, 1.0)))
+
+
+def mirrored(joints: Float) -> Float:
+    """(..., 17, 3) points in the mirror y = 0: left does what right did."""
+    return np.asarray(joints[..., _MIRROR, :] * _FLIP)
+
+
+def lead_right(track: Track, handed: Handed) -> Track:
+    """The track, mirrored in the plane y = 0 of the world if the left side leads: then the leading side is the right one."""
+    if handed == "right":
+        return track
+    covariance = track.covariance_m2[:, _MIRROR] * np.outer(_FLIP, _FLIP)
+    return Track(track.t_s, mirrored(track.joints_m), covariance, track.states[:, _MIRROR])
+
+
+def root_m(joints_m: Float) -> Float:
+    """(..., 3) the middle of the hips of (..., 17, 3) points; NaN where one is unknown."""
+    return np.asarray((joints_m[..., _LEFT_HIP, :] + joints_m[..., _RIGHT_HIP, :]) / 2)
+
+
+def facing(joints_m: Float) -> Float:
+    """(..., 2) unit vectors in the floor to where a pupil looks, by the lines of shoulders and hips.
+
+    Args:
+        joints_m: (..., 17, 3).
+
+    Returns:
+        NaN where the trunk is not upright (`UPRIGHT`), or not known.
+    """
+    left, right = (joints_m[..., pair, :].sum(axis=-2) for pair in ((_LEFT_SHOULDER, _LEFT_HIP), (_RIGHT_SHOULDER, _RIGHT_HIP)))
+    across = left - right
+    trunk = joints_m[..., (_LEFT_SHOULDER, _RIGHT_SHOULDER), :].sum(axis=-2) - 2 * root_m(joints_m)
+    ahead = np.stack((across[..., 1], -across[..., 0]), axis=-1)
+    length = np.linalg.norm(ahead, axis=-1, keepdims=True)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        upright = trunk[..., 2:] > UPRIGHT * np.linalg.norm(trunk, axis=-1, keepdims=True)
+        return np.where(upright & (length > 0), ahead / length, np.nan)
+
+
+def size_m(joints_m: Float) -> float:
+    """How large a body is: shoulder to hip to knee to ankle, the median over the frames of (T, 17, 3); NaN if it is not seen."""
+    total = 0.0
+    for upper, lower in _CHAIN:
+        lengths = [
+            np.linalg.norm(joints_m[:, coco.INDEX[f"{side}_{upper}"]] - joints_m[:, coco.INDEX[f"{side}_{lower}"]], axis=-1)
+            for side in _SIDES
+        ]
+        known = np.concatenate(lengths)
+        known = known[np.isfinite(known)]
+        total += float(np.median(known)) if len(known) else np.nan
+    return total
+
+
+def placing_of(joints_m: Float, frame_s: float, to_size_m: float) -> Placing | None:
+    """How to bring (T, 17, 3) joints into the canonical frame of a body of size `to_size_m`; None if they do not show it."""
+    size = size_m(joints_m)
+    ahead = facing(joints_m)
+    known = np.flatnonzero(np.isfinite(ahead[:, 0]))
+    if not len(known) or not size > 0:
+        return None
+    beginning = known[known <= known[0] + BEGINNING_S / frame_s] if frame_s > 0 else known[:1]
+    x, y = ahead[beginning].mean(axis=0)
+    return Placing(float(np.arctan2(y, x)), to_size_m / size)
+
+
+def placed(joints_m: Float, placing: Placing) -> Float:
+    """(T, 17, 3) joints in the canonical frame, the middle of the hips above the origin in every frame."""
+    centre = root_m(joints_m) * np.array((1.0, 1.0, 0.0))
+    return np.asarray((joints_m - centre[..., None, :]) @ placing.matrix.T)
