@@ -9,6 +9,7 @@ import structlog
 from models.messages import codec, topics
 from models.messages.addressed import read_health, read_observation
 from models.messages.control import ViewControl
+from models.messages.feedback import Feedback
 from models.messages.health import CameraHealth, FusionHealth
 from models.messages.lesson import SegmentRequest
 from models.messages.motion import Motion
@@ -99,7 +100,8 @@ class FusionLoop:
     def run(self) -> None:
         """Take observations as they come and tick at the live rate; ticks that were missed are not made up for."""
         self._bus.declare_alive(topics.alive(self._context.name))
-        subscription = self._bus.subscribe(*sorted(self._observations), topics.ALL_HEALTH, topics.segment_request(), keep=KEEP)
+        heard = (topics.ALL_HEALTH, topics.feedback(), topics.segment_request())
+        subscription = self._bus.subscribe(*sorted(self._observations), *heard, keep=KEEP)
         period_ns = round(SECOND_NS / self._context.site.fusion.live_hz)
         tick_ns = time.monotonic_ns()
         ticks = 0
@@ -132,6 +134,10 @@ class FusionLoop:
                 observation = read_observation(delivery.topic, delivery.payload)
                 self._log.add("observation", now_ns, delivery.payload)
                 self._step(observation)
+                return
+            if delivery.topic == topics.feedback():
+                codec.decode(delivery.payload, Feedback)  # A lesson holds nothing that cannot be read.
+                self._log.add("feedback", now_ns, delivery.payload)
                 return
             if delivery.topic == topics.segment_request():
                 self._answer(codec.decode(delivery.payload, SegmentRequest), now_ns)

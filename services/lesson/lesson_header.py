@@ -5,8 +5,8 @@ from dataclasses import dataclass, fields
 
 from models.camera.rig import Rig, decode_rig
 
-FORMAT = 1
-"""Version of the file's layout; a reader refuses one that is newer."""
+FORMAT = 2
+"""Version of the file's layout; a reader refuses one that is newer. 1 had no feedback; all else of it is the same."""
 NAME = "kinebox.lesson"
 _CHECK = "crc32"
 _LATEST_NS = 2**63

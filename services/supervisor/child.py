@@ -13,11 +13,11 @@ from pathlib import Path
 import msgspec
 
 from models.errors import USER_ERROR_PREFIX
-from models.process import EDGE, SPARE_READY, Playback, process_name
+from models.process import EDGE, EVALUATION, RECORDER, SPARE_READY, Playback, process_name
 
-_NICENESS = {EDGE: 5, "recorder": 10}
-"""Inference takes all the CPU that it is given; fusion and the page, which need little, shall not wait for it. At the start nobody
-shall wait for the recorder, which has nothing to do yet."""
+_NICENESS = {EDGE: 5, EVALUATION: 5, RECORDER: 10}
+"""Inference takes all the CPU that it is given; fusion and the page, which need little, shall not wait for it, nor for an attempt
+that is evaluated. At the start nobody shall wait for the recorder, which has nothing to do yet."""
 _MODULE = "services.cli.child"
 _READ_BYTES = 65536
 _READS_AT_ONCE = 16

@@ -11,7 +11,8 @@ from services.supervisor.child import Child, ChildSpec
 from services.supervisor.journal import Journal
 
 KEPT_FOR = (ROUTER, "tablet")
-"""Those without whom nobody sees a figure. A camera that starts anew is stood in for by the others."""
+"""Those without whom nobody sees a figure. A camera that starts anew is stood in for by the others; while the evaluation does, at
+most the attempt that is under way goes without a word, which is not worth the memory of a second one."""
 AFTER_S = 3.0
 """So long a post must have been manned and heard: the box that starts, or mends itself, needs the CPU more."""
 AGAIN_AFTER_S = 60.0

@@ -1,12 +1,12 @@
 """Who starts first. A figure takes fusion, the page and two cameras; on two cores the others would only keep it waiting. Pure."""
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection
 from dataclasses import dataclass
 from itertools import combinations
 
 from models.camera.pinhole import Camera
 from models.camera.rig import Rig
-from models.process import EDGE, RECORDER
+from models.process import EDGE, EVALUATION, RECORDER, REPLAY
 from services.supervisor.child import ChildSpec
 
 HEAD_START_S = 1.5
@@ -15,15 +15,18 @@ LATEST_S = 5.0
 """After this long nobody is waited for any more: the first may be slow, broken, or compiling for a minute."""
 
 
-def first(specs: Iterable[ChildSpec], rig: Rig) -> set[str]:
-    """The names of the processes that a figure takes: all but the recorder and the cameras beyond two.
+def first(specs: Collection[ChildSpec], rig: Rig) -> set[str]:
+    """The names of the processes that a figure takes: all but the evaluation, the recorder and the cameras beyond two.
 
     Args:
         specs: the processes of the box.
-        rig: its cameras. The two whose views are nearest to a right angle are chosen, since they know a joint best.
+        rig: its cameras. The two whose views are nearest to a right angle are chosen, since they know a joint best. A replay, which
+            runs none, starts whole.
     """
     pair = {camera.name for camera in min(combinations(rig, 2), key=_cosine, default=tuple(rig))}
-    return {spec.name for spec in specs if spec.entry != RECORDER and (spec.entry != EDGE or spec.camera in pair)}
+    entries = {spec.entry for spec in specs}
+    later = {EVALUATION, RECORDER} if REPLAY not in entries else set()
+    return {spec.name for spec in specs if spec.entry not in later and (spec.entry != EDGE or spec.camera in pair)}
 
 
 @dataclass

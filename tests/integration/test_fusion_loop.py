@@ -22,6 +22,7 @@ from services.fusion.config import PRESETS
 from services.fusion.pipeline import Tick, initial_state, step
 from tests.integration.fusion_room import RIG, fusion
 from tests.integration.waiting import DEADLINE_S, until
+from tests.mutations.samples import feedback
 from tests.synthetic.person import Person as Pupil
 
 PUPIL = Pupil()
@@ -277,3 +278,25 @@ def test_health_that_fusion_heard_is_in_its_log(tmp_path: Path) -> None:
         parts = log_a_segment(room, smooth=40)
     heard = [codec.decode(entry.payload, Health) for entry in entries_of(parts) if entry.kind == "health"]
     assert any(health.process == "fusion" for health in heard)
+
+
+@pytest.mark.slow
+def test_feedback_that_fusion_heard_is_in_its_log_and_rubbish_on_that_topic_is_not(tmp_path: Path) -> None:
+    told = codec.encode(feedback(time.monotonic_ns()))
+    with running(tmp_path) as room:
+        asked_ns = time.monotonic_ns()
+        room.bus.publish(topics.segment_request(), codec.encode(SegmentRequest(asked_ns)))
+        logged: list[bytes] = []
+
+        def enough() -> bool:
+            room.bus.publish(topics.feedback(), told[:-1])
+            room.bus.publish(topics.feedback(), told)
+            delivery = room.logs.receive(DEADLINE_S)
+            assert delivery is not None
+            part = codec.decode(delivery.payload, FusionLog)
+            logged.extend(entry.payload for entry in part.entries if entry.kind == "feedback")
+            return bool(logged)
+
+        until(enough, "feedback in fusion's log")
+        until(lambda: room.fusion_health()[1].rejected > 0, "a refusal in fusion's health")
+    assert set(logged) == {told}
