@@ -2,7 +2,9 @@
 
 from typing import Final
 
-from services.evaluation.measures import landing, timing
+from services.evaluation.measures import landing, timing, together
 from services.evaluation.measures.measured import Function
 
-FUNCTIONS: Final[dict[str, Function]] = {function.name: function for function in (*timing.FUNCTIONS, *landing.FUNCTIONS)}
+FUNCTIONS: Final[dict[str, Function]] = {
+    function.name: function for function in (*timing.FUNCTIONS, *landing.FUNCTIONS, *together.FUNCTIONS)
+}

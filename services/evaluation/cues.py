@@ -1,0 +1,86 @@
+"""What is said after an attempt: what was good first, then at most one thing to correct; nothing where nobody can be sure.
+
+Rules and texts only: no words are made up here or by any model (docs/decisions/0009-no-language-model.md). The same judgements give
+the same words.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from models.messages.feedback import Judgement
+from models.teaching.schema import Teaching
+
+CALLED: Final = 0.5
+"""From this severity on a fault is corrected."""
+SURE: Final = 0.75
+"""So likely it must be that a fault is one, to be spoken of."""
+GOOD: Final = 0.4
+SURELY_GOOD: Final = 0.9
+"""A point is praised that has less than this severity, so likely."""
+_WORST: Final = 1.5
+"""What is still worse is not corrected with more urgency."""
+
+
+@dataclass(frozen=True)
+class Said:
+    """Of one attempt.
+
+    Attributes:
+        praise: the fault whose point was good; empty for none.
+        cue: the fault that is to be corrected; empty for none.
+        certainty: how likely it is that this fault was made; 0 without a cue.
+    """
+
+    praise: str = ""
+    cue: str = ""
+    certainty: float = 0.0
+
+
+def choose(teaching: Teaching, judgements: Sequence[Judgement]) -> Said:
+    """What to say.
+
+    Args:
+        teaching: of the action.
+        judgements: of its faults, in the same order (`services.evaluation.faults.judge`).
+    """
+    importances = [fault.importance for fault in teaching.fault]
+    cue = _largest([_urgency(one, weight) for one, weight in zip(judgements, importances, strict=True)])
+    praise = _largest([_merit(one, weight) for one, weight in zip(judgements, importances, strict=True)])
+    return Said(
+        praise="" if praise is None else judgements[praise].fault,
+        cue="" if cue is None else judgements[cue].fault,
+        certainty=0.0 if cue is None else above(judgements[cue], CALLED),
+    )
+
+
+def above(judgement: Judgement, severity: float) -> float:
+    """How likely it is that a fault is more severe than this; 0.5 if nothing is known of it."""
+    if judgement.severity is None or judgement.sigma is None:
+        return 0.5
+    if judgement.sigma == 0:
+        return float(judgement.severity > severity)
+    return 0.5 * math.erfc((severity - judgement.severity) / (math.sqrt(2) * judgement.sigma))
+
+
+def _urgency(judgement: Judgement, importance: float) -> float:
+    """Importance times size times certainty; 0 for what is not to be corrected."""
+    sure = above(judgement, CALLED)
+    if judgement.severity is None or sure < SURE:
+        return 0.0
+    return importance * min(judgement.severity, _WORST) * sure
+
+
+def _merit(judgement: Judgement, importance: float) -> float:
+    """The same of what was good; 0 for what is not surely good."""
+    sure = 1 - above(judgement, GOOD)
+    if judgement.severity is None or sure < SURELY_GOOD:
+        return 0.0
+    return importance * (1 - max(judgement.severity, -0.5)) * sure
+
+
+def _largest(values: Sequence[float]) -> int | None:
+    """Place of the largest value, the first of equal ones; None if none is above 0."""
+    place = max(range(len(values)), key=values.__getitem__, default=None)
+    return place if place is not None and values[place] > 0 else None
