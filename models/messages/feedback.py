@@ -21,8 +21,6 @@ MAX_ENTRIES: Final = 64
 MAX_SHOWN: Final = 3
 MAX_VALUE: Final = 1e9
 """No measure of a pupil is larger; what lies beyond is no measure but a mistake."""
-KEYFRAMES: Final = 4
-"""Start, exertion, peak, end: see `models.motions.motion.Attempt`."""
 
 ANY: Final = ""
 """In the place of an action: whichever it is."""

@@ -14,7 +14,7 @@ from typing import Any
 
 from numba.core.dispatcher import Dispatcher
 
-from services import fusion
+from services import evaluation, fusion
 
 
 def main() -> None:
@@ -25,9 +25,10 @@ def main() -> None:
 
 
 def _entry_kernels() -> Iterator[Any]:
-    for found in pkgutil.iter_modules(fusion.__path__):
-        if found.name != "process":
-            yield from _of_module(importlib.import_module(f"{fusion.__name__}.{found.name}"))
+    for package in (fusion, evaluation):
+        for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if not found.name.endswith(".process"):
+                yield from _of_module(importlib.import_module(found.name))
 
 
 def _of_module(module: ModuleType) -> Iterator[Any]:

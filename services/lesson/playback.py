@@ -1,9 +1,11 @@
 """The replay process: plays a lesson in the place of fusion and its cameras, at the lesson's own pace or another.
 
 What was observed goes through fusion's step again; motions come out with their times moved to now, so that a figure is as old
-when it is shown as it was in the lesson. What cameras and fusion said of themselves is said again at its time.
+when it is shown as it was in the lesson. What cameras and fusion said of themselves is said again at its time. Attempts are found
+and judged again by the evaluation, which runs beside; it is told what pupils were to do at that time of the lesson.
 """
 
+import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -13,9 +15,10 @@ import msgspec
 
 from models.errors import UserError
 from models.messages import codec, topics
+from models.messages.feedback import ActivityRequest
 from models.messages.health import Health, ReplayHealth
 from models.messages.motion import Motion
-from models.process import EDGE, ROUTER, Playback, ProcessContext, process_name
+from models.process import EDGE, EVALUATION, ROUTER, Playback, ProcessContext, process_name
 from services.fusion.warm_up import warm_up
 from services.lesson.lesson_reader import Lesson, open_lesson
 from services.lesson.replay import Replayed, configuration, decode, replay
@@ -86,6 +89,8 @@ class Player:
         self._rig = lesson.header.rig()
         self._players = {ROUTER, *(process_name(EDGE, name) for name in self._rig.names)}
         self._said: dict[str, tuple[int, Health]] = {}
+        self._asked: ActivityRequest | None = None
+        self._ask_again = threading.Event()
         self._position_ns = 0
         self._begin_ns, self._end_ns = lesson.span_ns()
         self._reporter = HealthReporter(context.name, context.bus, context.resources, clock_ns)
@@ -93,6 +98,8 @@ class Player:
     def run(self) -> None:
         """Play the lesson, again and again if that is wished."""
         self._bus.declare_alive(topics.alive(self._context.name))
+        # It may come later than the first word about it, and be started again.
+        self._bus.watch_alive(topics.alive(EVALUATION), lambda _, alive: self._ask_again.set() if alive else None)
         while not self._context.stop.is_set():
             self._play(replay(self._lesson.parts(), self._rig, self._config))
             # A round without an entry, and thus without a wait of its own, must not spin.
@@ -101,6 +108,7 @@ class Player:
 
     def _play(self, items: Iterator[Replayed]) -> None:
         self._said.clear()
+        self._asked = None
         pace = Pace(self._playback.speed, self._begin_ns, self._clock_ns())
         for item in items:
             entry = item.entry
@@ -113,6 +121,8 @@ class Player:
                 said = decode(entry, Health)
                 if said.process in self._players:
                     self._said[said.process] = (entry.t_ns, said)
+                elif said.process == EVALUATION and said.evaluation is not None:
+                    self._ask(ActivityRequest(said.evaluation.activity))
             for motion in item.motions:
                 self._bus.publish(topics.motion(motion.kind), codec.encode(moved(motion, due_ns - entry.t_ns, self._clock_ns())))
 
@@ -122,11 +132,20 @@ class Player:
             self._context.beat()
             if self._reporter.due():
                 self._speak()
+            if self._ask_again.is_set() and self._asked is not None:
+                self._ask_again.clear()
+                self._bus.publish(topics.activity_request(), codec.encode(self._asked))
             remaining_s = (due_ns - self._clock_ns()) * 1e-9
             if self._context.stop.wait(max(min(remaining_s, _ROUND_S), 0.0)):
                 return False
             if remaining_s <= _ROUND_S:
                 return True
+
+    def _ask(self, request: ActivityRequest) -> None:
+        """Say what pupils were to do, when that changed; between two changes whoever watches may choose otherwise."""
+        if request != self._asked:
+            self._asked = request
+            self._ask_again.set()
 
     def _speak(self) -> None:
         length_s = (self._end_ns - self._begin_ns) * 1e-9

@@ -24,8 +24,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from models.arrays import UInt8
-from models.messages.feedback import KEYFRAMES, Colour, Feedback
+from models.arrays import Bool, Float, Float32, UInt8
+from models.messages.feedback import Colour, Feedback
 from models.messages.motion import JointState
 from models.skeleton import coco
 
@@ -119,7 +119,7 @@ def unpack(data: bytes) -> AttemptReplay:
         raise AttemptReplayError(f"replay of version {version} with {joint_count} joints; this KineBox reads {VERSION}")
     if count == 0 or len(data) != size(count):
         raise AttemptReplayError(f"{len(data)} bytes are no replay of {count} frames")
-    if len(keyframes) != KEYFRAMES or fourth >= count or any(before > after for before, after in pairwise(keyframes)):
+    if fourth >= count or any(before > after for before, after in pairwise(keyframes)):
         raise AttemptReplayError(f"the keyframes {keyframes} of a replay of {count} frames")
     joints = np.frombuffer(data, _JOINT, count * coco.COUNT, _HEADER.size).reshape(count, coco.COUNT)
     standard = np.frombuffer(data, "<i2", offset=_HEADER.size + joints.nbytes)
@@ -136,8 +136,8 @@ def unpack(data: bytes) -> AttemptReplay:
     )
 
 
-def _rounded(places_m: npt.NDArray[np.float32]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_]]:
+def _rounded(places_m: Float32) -> tuple[Float, Bool]:
     """Places (T, 17, 3) in whole millimetres, and (T, 17) whether they are known and fit."""
     rounded_mm = np.rint(places_m.astype(np.float64) * 1000)
-    fits = (np.abs(rounded_mm) <= _LIMIT_MM).all(axis=2)
+    fits = np.asarray((np.abs(rounded_mm) <= _LIMIT_MM).all(axis=2))
     return np.where(fits[..., None], rounded_mm, 0), fits

@@ -15,7 +15,7 @@ from prometheus_client.registry import Collector
 
 from models.messages.health import Health
 from models.messages.trouble import MACHINE_CODES
-from models.process import RECORDER, ROUTER
+from models.process import EVALUATION, RECORDER, ROUTER
 from services.tablet.messages import CameraState, CameraStatus, MachineStatus, ProcessState, ProcessStatus, Status
 
 CONTENT_TYPE = CONTENT_TYPE_PLAIN_0_0_4
@@ -60,6 +60,7 @@ class RoomCollector(Collector):
         yield from _each("process", get_args(ProcessState), status.processes, _PROCESS_GAUGES, _PROCESS_COUNTERS)
         yield from _machine(status.machine)
         yield from _recorder(_said_by(RECORDER, healths))
+        yield from _evaluation(_said_by(EVALUATION, healths))
 
 
 def _said_by(process: str, healths: list[Health]) -> Health | None:
@@ -207,3 +208,17 @@ def _recorder(health: Health | None) -> Iterator[Metric]:
     yield _gauge("recorder_safe_seconds", "Length of the lesson that is safe on disk.", running.recorded_s if running else None)
     yield _gauge("recorder_file_bytes", "Size of the lesson's file.", running.size_bytes if running else None)
     yield _gauge("recorder_gaps", "Interruptions since the lesson began.", running.gaps if running else None)
+
+
+def _evaluation(health: Health | None) -> Iterator[Metric]:
+    said = health.evaluation if health else None
+    attempts = CounterMetricFamily("kinebox_evaluation_attempts", "Attempts that were found since the evaluation started.")
+    if said is not None:
+        attempts.add_metric([], said.attempts)
+    yield attempts
+    moving = float(said.state == "moving") if said is not None and said.state != "unknown" else None
+    yield _gauge("evaluation_moving", "1 while an attempt seems to be under way, 0 between them.", moving)
+    frame_s, attempt_s = (said.frame_ms * 1e-3, said.attempt_ms * 1e-3) if said is not None else (None, None)
+    yield _gauge("evaluation_step_cpu_seconds", "CPU time of the evaluation for each figure, over the last second.", frame_s)
+    yield _gauge("evaluation_attempt_cpu_seconds", "CPU time that the last attempt took.", attempt_s or None)
+    yield _gauge("evaluation_missed_motions", "Figures of the last second that it missed.", said.missed if said else None)

@@ -14,14 +14,16 @@ from models.config.site import TabletConfig
 from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.addressed import read_health
-from models.messages.feedback import Feedback
+from models.messages.feedback import ActivityRequest, Feedback
 from models.messages.motion import Motion
 from models.messages.trouble import messages_refused
-from models.process import Delivery, ProcessContext, Subscription
+from models.process import Bus, Delivery, ProcessContext, Subscription
 from services.support import listening
 from services.support.health import PERIOD_S, HealthReporter
+from services.support.teaching_files import load_teachings, own_folder
 from services.tablet.room_state import RoomState
 from services.tablet.server import TabletServer, create_app
+from services.tablet.teaching_words import words_of
 
 PAGE = Path(__file__).parent / "web" / "dist"
 
@@ -38,16 +40,17 @@ def main(context: ProcessContext) -> None:
     """Serve the page until `context.stop` is set.
 
     Raises:
-        UserError: the page is not built, or the port cannot be listened on.
+        UserError: the page is not built, what is taught cannot be read, or the port cannot be listened on.
         Exception: what one of the server's parts failed with; without it the page would show a past for ever.
     """
     if not (PAGE / "index.html").is_file():
         raise UserError("tablet: the page is not built (services/tablet/web/dist is missing); run 'make web'")
-    listener = listen(context.site.tablet)
     site = context.site
+    teaching = words_of(load_teachings(own_folder(context.data, site.evaluation.teaching), None), site.evaluation.language)
+    listener = listen(site.tablet)
     cameras = tuple(camera.name for camera in site.cameras)
     room = RoomState(site.name, cameras, site.fusion.live_hz, time.monotonic_ns(), context.playback)
-    server = TabletServer(room, time.monotonic_ns)
+    server = TabletServer(room, time.monotonic_ns, teaching, lambda request: _ask(context.bus, request))
     try:
         asyncio.run(_serve(context, server, listener))
     finally:
@@ -68,6 +71,10 @@ def listen(config: TabletConfig) -> socket.socket:
     except OSError as error:
         remedy = "end the program that uses it, or set another 'port' under [tablet] in the site file"
         raise UserError(f"{where}: {error.strerror}; {remedy}") from error
+
+
+def _ask(bus: Bus, request: ActivityRequest) -> None:
+    bus.publish(topics.activity_request(), codec.encode(request))
 
 
 class _Uvicorn(uvicorn.Server):

@@ -112,7 +112,8 @@ class RoomState:
             self.rejected_bus_messages += 1
             return
         self._health[health.process] = HeardHealth(health, now_ns)
-        self._evaluation = health.evaluation or self._evaluation
+        if health.process == EVALUATION:
+            self._evaluation = health.evaluation or self._evaluation
         restarts = self._restarts(self._router)
         if health.process == "supervisor" and restarts is not None and restarts.given_up:
             self._presences.note_stand_in(now_ns)  # It would not be heard if it did not route.

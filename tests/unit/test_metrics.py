@@ -10,6 +10,7 @@ from prometheus_client.parser import text_string_to_metric_families
 
 from models.messages.health import (
     CameraHealth,
+    EvaluationHealth,
     FusionHealth,
     Health,
     MachineHealth,
@@ -52,6 +53,7 @@ def full_room() -> Room:
     room.hear("edge-a", camera=CameraHealth("a", 30.0, 14.5, 15.0, 7, 20.0, "thunder", {"decode": 4.0, "pose": 24.0}))
     room.hear("fusion", fusion=FusionHealth(29.5, 2.5, 0.5, 4, {"b": 9}, "found"))
     room.hear("recorder", recorder=RecorderHealth("2026-11-22-7b", "7b", 61.5, 2_250_000, 1))
+    room.hear("evaluation", evaluation=EvaluationHealth("long_jump", "tablet", "moving", 12, 0.25, 31.5, 2, 0))
     restarts = (Restarts("edge-a", 2, T0, "hung", ""),)
     room.hear("supervisor", "degraded", machine=MACHINE, supervisor=SupervisorHealth("0.1.0", T0, restarts))
     room.state.rejected_bus_messages = 5
@@ -93,6 +95,11 @@ def test_what_the_processes_said_is_what_prometheus_reads_in_base_units() -> Non
         ("kinebox_machine_clock_seconds",): 1_700_000_000,
         ("kinebox_recorder_safe_seconds",): 61.5,
         ("kinebox_recorder_file_bytes",): 2_250_000,
+        ("kinebox_evaluation_attempts_total",): 12,
+        ("kinebox_evaluation_moving",): 1,
+        ("kinebox_evaluation_step_cpu_seconds",): 0.00025,
+        ("kinebox_evaluation_attempt_cpu_seconds",): 0.0315,
+        ("kinebox_evaluation_missed_motions",): 2,
         ("kinebox_rejected_messages_total", "bus"): 5,
         ("kinebox_clients",): 3,
         ("kinebox_pupil_found",): 1,
