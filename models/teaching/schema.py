@@ -196,9 +196,7 @@ _INDEX: Final = re.compile(r"\.(fault|shown)\[(\d+)\]")
 def _plain(message: str, data: bytes) -> str:
     """What msgspec found, with the name of the fault or measure in place of its number."""
     found = _PLACE.match(message)
-    if found is None:
-        return message
-    what, path = found["what"], found["path"]
+    what, path = (found["what"], found["path"]) if found else (message, "")
     for pattern, plain in _PLAINER:
         what = re.sub(pattern, plain, what)
     names = _names(data)
