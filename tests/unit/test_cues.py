@@ -1,0 +1,117 @@
+"""At most one thing to correct, and only what is sure; what was good comes first."""
+
+import itertools
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from models.messages.feedback import Judgement
+from models.teaching.schema import Fault, Teaching, decode_teaching
+from services.evaluation.cues import Said, above, choose
+from tests.teaching_texts import GOOD, VOCABULARY
+
+FILE = decode_teaching(GOOD.encode(), "squat.toml", VOCABULARY)
+
+
+def teaching(**importances: float) -> Teaching:
+    one = FILE.fault[0]
+    faults = tuple(
+        Fault(name=name, importance=importance, cue=one.cue, praise=one.praise, evidence=one.evidence)
+        for name, importance in importances.items()
+    )
+    return Teaching(version=1, action="squat", title=FILE.title, shown=FILE.shown, fault=faults)
+
+
+def said(importances: dict[str, float], **judged: tuple[float, float] | None) -> Said:
+    judgements = [Judgement(name, *(one or (None, None))) for name, one in judged.items()]
+    return choose(teaching(**importances), judgements)
+
+
+def test_what_is_surely_a_fault_is_corrected() -> None:
+    one = said({"a": 1, "b": 1}, a=(0.0, 0.1), b=(1.0, 0.1))
+    assert (one.cue, one.praise) == ("b", "a")
+    assert one.certainty > 0.99
+
+
+def test_silence_where_nobody_can_be_sure() -> None:
+    assert said({"a": 1, "b": 1}, a=(0.6, 0.5), b=(0.45, 0.3)) == Said()
+
+
+def test_silence_where_nothing_was_seen() -> None:
+    assert said({"a": 1, "b": 1}, a=None, b=None) == Said()
+
+
+def test_silence_without_a_fault() -> None:
+    assert said({"a": 1, "b": 1}, a=(0.1, 0.1), b=(0.3, 0.1)).cue == ""
+
+
+def test_the_more_important_of_two_faults_is_corrected() -> None:
+    assert said({"a": 1, "b": 3}, a=(1.0, 0.1), b=(1.0, 0.1)).cue == "b"
+
+
+def test_the_larger_of_two_faults_is_corrected() -> None:
+    assert said({"a": 2, "b": 2}, a=(0.7, 0.05), b=(1.2, 0.05)).cue == "b"
+
+
+def test_the_surer_of_two_faults_is_corrected() -> None:
+    assert said({"a": 2, "b": 2}, a=(1.0, 0.6), b=(1.0, 0.05)).cue == "b"
+
+
+def test_the_first_of_two_equal_faults_is_corrected() -> None:
+    assert said({"a": 2, "b": 2}, a=(1.0, 0.1), b=(1.0, 0.1)).cue == "a"
+
+
+def test_a_mad_severity_does_not_outrank_what_is_important() -> None:
+    assert said({"a": 1, "b": 3}, a=(2.5, 0.1), b=(0.9, 0.1)).cue == "b"
+
+
+def test_praise_is_of_the_most_important_point_that_was_good() -> None:
+    assert said({"a": 1, "b": 3, "c": 2}, a=(0.0, 0.1), b=(0.0, 0.1), c=(0.0, 0.1)).praise == "b"
+
+
+def test_what_may_have_been_wrong_is_not_praised() -> None:
+    assert said({"a": 3, "b": 1}, a=(0.35, 0.1), b=(0.0, 0.1)).praise == "b"
+    assert said({"a": 3}, a=(0.0, 0.5)).praise == ""
+
+
+judgements = st.one_of(st.none(), st.tuples(st.floats(-1, 2.5), st.floats(0, 1)))
+
+
+@given(st.lists(st.tuples(st.floats(0.1, 5), judgements), min_size=1, max_size=6))
+def test_what_is_corrected_is_never_praised_and_always_called(faults: list[tuple[float, tuple[float, float] | None]]) -> None:
+    names = "abcdef"[: len(faults)]
+    importances = {name: importance for name, (importance, _) in zip(names, faults, strict=True)}
+    judged = dict(zip(names, (one for _, one in faults), strict=True))
+    one = said(importances, **judged)
+    assert one == said(importances, **judged)
+    assert not one.cue or one.cue != one.praise
+    if one.cue:
+        severity = judged[one.cue]
+        assert severity is not None
+        assert severity[0] > 0.5
+        assert one.certainty >= 0.75
+    else:
+        assert one.certainty == 0
+
+
+@given(st.floats(0.51, 1.5), st.floats(0.51, 1.5), st.floats(0.01, 0.5))
+def test_a_worse_fault_is_never_called_less_surely(one: float, other: float, sigma: float) -> None:
+    worse, slighter = max(one, other), min(one, other)
+    assert above(Judgement("a", worse, sigma), 0.5) >= above(Judgement("a", slighter, sigma), 0.5)
+
+
+def test_how_likely_a_severity_is() -> None:
+    assert above(Judgement("a", 0.5, 0.2), 0.5) == pytest.approx(0.5)
+    assert above(Judgement("a", 0.7, 0.2), 0.5) == pytest.approx(0.8413, abs=1e-4)
+    assert above(Judgement("a", 0.7, 0.0), 0.5) == 1
+    assert above(Judgement("a", None, None), 0.5) == 0.5
+
+
+def test_the_order_of_the_file_does_not_change_what_is_said() -> None:
+    importances, judged = {"a": 1.0, "b": 3.0, "c": 2.0}, {"a": (0.9, 0.1), "b": (0.8, 0.2), "c": (0.0, 0.1)}
+    every = {
+        said({name: importances[name] for name in order}, **{name: judged[name] for name in order})
+        for order in itertools.permutations("abc")
+    }
+    assert len(every) == 1
