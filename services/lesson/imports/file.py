@@ -1,0 +1,34 @@
+"""A motion file of another program, by its name."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+from models.errors import UserError
+from services.evaluation.track import Track
+from services.lesson.imports import bvh, c3d, trc
+from services.lesson.readable_names import readable
+
+READERS: Final[dict[str, Callable[[bytes, str], Track]]] = {".trc": trc.decode, ".c3d": c3d.decode, ".bvh": bvh.decode}
+MOST_BYTES: Final = 500_000_000
+
+
+def read_motion(file: Path) -> Track:
+    """The track of a TRC, C3D or BVH file.
+
+    Raises:
+        UserError: it cannot be read; the reason names the file and says what to do.
+    """
+    name = readable(str(file))
+    decode = READERS.get(file.suffix.lower())
+    if decode is None:
+        raise UserError(f"{name} is of no kind that can be imported; name a file that ends with {', '.join(READERS)}")
+    try:
+        if file.stat().st_size > MOST_BYTES:
+            raise UserError(f"{name} is larger than {MOST_BYTES / 1e6:.0f} MB; export the attempt alone")
+        data = file.read_bytes()
+    except FileNotFoundError as error:
+        raise UserError(f"{name} does not exist; correct the name") from error
+    except OSError as error:
+        raise UserError(f"{name} cannot be read: {error.strerror}; correct its path or its permissions") from error
+    return decode(data, name)

@@ -1,0 +1,150 @@
+"""Laws of exported motions: what is read back is what was written; what is cut off is refused, what is changed is harmless."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from models.errors import UserError
+from models.messages.motion import JointState
+from models.skeleton import coco
+from services.evaluation.track import Track
+from services.lesson.export import bvh, c3d, glb, mot, trc
+from services.lesson.export.take import Take, TakeError
+from services.lesson.imports import bvh as bvh_reading
+from services.lesson.imports import c3d as c3d_reading
+from services.lesson.imports import trc as trc_reading
+from tests.takes import FRAME_S, moving
+
+TEXT_M = 1e-5
+FLOAT_M = 1e-6
+READERS = {trc: trc_reading.decode, c3d: c3d_reading.decode, bvh: bvh_reading.decode}
+
+tracks = st.builds(moving, st.integers(0, 10**6), st.integers(2, 40), st.sampled_from((0.0, 0.3, 0.8)))
+whole_tracks = st.builds(moving, st.integers(0, 10**6), st.integers(2, 40))
+
+
+def take_of(track: Track) -> Take:
+    return Take(track, "motion")
+
+
+def read_or_refused(data: bytes, kind: object) -> Track | None:
+    try:
+        return READERS[kind](data, "motion")  # type: ignore[index]
+    except UserError as error:
+        told = str(error)
+    assert "\n" not in told
+    assert "motion" in told
+    return None
+
+
+def writable(track: Track) -> bool:
+    """Whether some joint is left, and each of those that an importer needs is left somewhere."""
+    return bool((track.states != JointState.UNKNOWN).any(axis=0).all())
+
+
+@settings(max_examples=60, deadline=None)
+@given(tracks)
+def test_trc_read_back_is_the_motion_to_a_hundredth_of_a_millimetre(track: Track) -> None:
+    if not writable(track):
+        return
+    back = trc_reading.decode(trc.encode(take_of(track)), "motion.trc")
+    assert back.frame_s == pytest.approx(track.frame_s, rel=1e-6)
+    np.testing.assert_allclose(back.joints_m, track.joints_m, atol=TEXT_M)
+    np.testing.assert_array_equal(back.states == JointState.UNKNOWN, track.states == JointState.UNKNOWN)
+
+
+@settings(max_examples=60, deadline=None)
+@given(tracks)
+def test_c3d_read_back_is_the_motion_with_its_states_and_sigmas(track: Track) -> None:
+    if not writable(track):
+        return
+    back = c3d_reading.decode(c3d.encode(take_of(track)), "motion.c3d")
+    assert back.frame_s == pytest.approx(track.frame_s, rel=1e-6)
+    np.testing.assert_allclose(back.joints_m, track.joints_m, atol=FLOAT_M)
+    np.testing.assert_array_equal(back.states, track.states)
+    seen = track.states == JointState.SEEN
+    sigma_m = np.sqrt(np.trace(back.covariance_m2, axis1=2, axis2=3)[seen] / 3)
+    truth_m = np.sqrt(np.trace(track.covariance_m2, axis1=2, axis2=3)[seen] / 3)
+    np.testing.assert_allclose(sigma_m, truth_m, atol=1e-3 * c3d.SIGMA_STEP_MM / 2 + 1e-9)
+
+
+CHAINS = {
+    f"{side}_{far}": [(f"{side}_{a}", f"{side}_{b}") for a, b in chain]
+    for side in ("left", "right")
+    for far, chain in (
+        ("knee", [("hip", "knee")]),
+        ("ankle", [("hip", "knee"), ("knee", "ankle")]),
+        ("elbow", [("shoulder", "elbow")]),
+        ("wrist", [("shoulder", "elbow"), ("elbow", "wrist")]),
+    )
+}
+
+
+@settings(max_examples=40, deadline=None)
+@given(whole_tracks)
+def test_a_skeletons_joints_are_off_by_no_more_than_its_bones_vary(track: Track) -> None:
+    back = bvh_reading.decode(bvh.encode(take_of(track)), "motion.bvh")
+    off_m = np.linalg.norm(back.joints_m - track.joints_m, axis=2)
+    joints = {name: track.joints_m[:, index] for index, name in enumerate(coco.NAMES)}
+
+    def varies(start: np.ndarray, end: np.ndarray) -> np.ndarray:
+        lengths = np.linalg.norm(end - start, axis=1)
+        return np.asarray(np.abs(lengths - np.median(lengths)))
+
+    hips, shoulders = ((joints[f"left_{part}"] + joints[f"right_{part}"]) / 2 for part in ("hip", "shoulder"))
+    for name in coco.NAMES[coco.INDEX["left_shoulder"] :]:
+        side = name.partition("_")[0]
+        arm = "shoulder" in name or "elbow" in name or "wrist" in name
+        base = (
+            varies(hips, shoulders) + varies(shoulders, joints[f"{side}_shoulder"]) if arm else varies(hips, joints[f"{side}_hip"])
+        )
+        bound = base + sum(varies(joints[a], joints[b]) for a, b in CHAINS.get(name, []))
+        assert (off_m[:, coco.INDEX[name]] <= bound + 2e-5).all(), name
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10**6))
+def test_a_skeleton_of_rigid_bones_comes_back_whole(seed: int) -> None:
+    """One pose that turns: all bones keep their lengths, so only the file's four digits are lost."""
+    still = moving(seed, 2, swing_m=0.03).joints_m[0]
+    angles = np.linspace(0, 5, 20)
+    turned = np.stack([still @ np.array(((np.cos(a), -np.sin(a), 0), (np.sin(a), np.cos(a), 0), (0, 0, 1))).T for a in angles])
+    states = np.full(turned.shape[:2], JointState.SEEN, np.uint8)
+    track = Track(angles * 0 + np.arange(20) * FRAME_S, turned, np.zeros((20, 17, 3, 3)), states)
+    back = bvh_reading.decode(bvh.encode(take_of(track)), "motion.bvh")
+    np.testing.assert_allclose(back.joints_m, turned, atol=2e-5)
+
+
+@settings(max_examples=60, deadline=None)
+@given(tracks, st.sampled_from((trc, c3d, bvh, glb, mot)))
+def test_whatever_is_unknown_a_take_is_written_or_refused_with_a_reason(track: Track, kind: object) -> None:
+    try:
+        data = kind.encode(take_of(track))  # type: ignore[attr-defined]
+    except TakeError:
+        return
+    assert len(data) > 100
+    if kind in (trc, bvh, mot):
+        assert b"nan" not in data.lower()
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.sampled_from((trc, c3d, bvh)), st.floats(0, 1))
+def test_a_file_that_is_cut_off_anywhere_is_refused(kind: object, share: float) -> None:
+    data = kind.encode(take_of(moving(3, 20)))  # type: ignore[attr-defined]
+    assert read_or_refused(data[: int(share * (len(data) - 513))], kind) is None
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.sampled_from((trc, c3d, bvh)), st.data())
+def test_a_file_in_which_bytes_were_changed_is_read_or_refused_in_one_line(kind: object, data: st.DataObject) -> None:
+    changed = bytearray(kind.encode(take_of(moving(3, 5))))  # type: ignore[attr-defined]
+    for _ in range(data.draw(st.integers(1, 6))):
+        changed[data.draw(st.integers(0, min(len(changed) - 1, 4000)))] = data.draw(st.integers(0, 255))
+    track = read_or_refused(bytes(changed), kind)
+    assert track is None or len(track) >= 2
+
+
+@given(st.binary(max_size=3000), st.sampled_from((trc, c3d, bvh)))
+def test_bytes_of_anything_are_refused_in_one_line(data: bytes, kind: object) -> None:
+    assert read_or_refused(data, kind) is None
