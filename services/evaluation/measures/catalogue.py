@@ -2,9 +2,8 @@
 
 from typing import Final
 
-from services.evaluation.measures import landing, striking, timing, together
+from services.evaluation.measures import balance, jumps, landing, smoothness, striking, symmetry, timing, together, travel
 from services.evaluation.measures.measured import Function
 
-FUNCTIONS: Final[dict[str, Function]] = {
-    function.name: function for function in (*timing.FUNCTIONS, *landing.FUNCTIONS, *together.FUNCTIONS, *striking.FUNCTIONS)
-}
+_FAMILIES: Final = (timing, jumps, travel, landing, striking, together, symmetry, balance, smoothness)
+FUNCTIONS: Final[dict[str, Function]] = {function.name: function for family in _FAMILIES for function in family.FUNCTIONS}

@@ -5,8 +5,8 @@ from typing import Final, Literal
 
 from services.evaluation.signals.posture import Formula
 
-Unit = Literal["deg", "pct", "cm", "m_s", "m_s2", "s", "deg_s"]
-"""As `models.teaching.schema` has them; pct is of the pupil's stature where nothing else is said."""
+Unit = Literal["deg", "pct", "cm", "m_s", "m_s2", "s", "deg_s", "1"]
+"""As `models.teaching.schema` has them; 1 is a plain number, pct is of the pupil's stature where nothing else is said."""
 NO_SOURCE: Final = ""
 
 
