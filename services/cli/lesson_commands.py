@@ -1,4 +1,4 @@
-"""The commands about lessons: record, replay, lessons. As in `main`, each imports what it needs when it runs."""
+"""The commands about lessons: record, replay, export, lessons. As in `main`, each imports what it needs when it runs."""
 
 import os
 from pathlib import Path
@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from models.errors import UserError
+from services.lesson.export.kinds import Format
 
 SiteFile = Annotated[Path, typer.Option("--site", help="The site file of the box that runs.", dir_okay=False)]
 LessonSite = Annotated[
@@ -21,6 +22,7 @@ def add_to(app: typer.Typer) -> None:
     """Make the commands part of `kinebox`."""
     app.command()(record)
     app.command()(replay)
+    app.command()(export)
     app.add_typer(lessons_app, name="lessons")
 
 
@@ -77,6 +79,25 @@ def replay(
     from services.cli.replay import play  # noqa: PLC0415
 
     play(file, data, TabletConfig(host=host, port=port), speed, loop=loop)
+
+
+def export(
+    lesson: Annotated[str, typer.Argument(help="A lesson's name, as 'kinebox lessons' lists it, or a file.")],
+    kind: Annotated[Format, typer.Option("--format", help="What the other program reads.", show_default=False)],
+    out: Annotated[Path, typer.Option(help="The folder to write into.", file_okay=False)] = Path(),
+    attempt: Annotated[int | None, typer.Option(min=1, help="Only the lesson's attempt of this number.", metavar="N")] = None,
+    pupil: Annotated[str, typer.Option(help="The pupil's code, to stand in the files.")] = "",
+    data: DataFolder = Path("build"),
+    site: LessonSite = None,
+) -> None:
+    """Write a lesson's motion, or one attempt of it, for other programs."""
+    from services.support.environment import process_environment  # noqa: PLC0415
+
+    os.environ.update(process_environment(data))  # before numpy and numba are imported
+    from services.cli import lessons  # noqa: PLC0415
+    from services.cli.export import export as write  # noqa: PLC0415
+
+    write(lessons.find(lesson, lessons.folder_of(data, site)), kind, out, attempt, pupil)
 
 
 @lessons_app.callback(invoke_without_command=True)

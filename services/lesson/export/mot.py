@@ -57,7 +57,7 @@ def coordinates(take: Take) -> Coordinates:
     found: Coordinates = {}
     _add_angles(found, pelvis, ("pelvis_tilt", "pelvis_list", "pelvis_rotation"))
     width = np.linalg.norm(right_hips, axis=1)
-    scale = float(np.median(width[np.isfinite(width)])) / (2 * HIP_IN_PELVIS[2])
+    scale = float(np.median(width[np.isfinite(width)])) / (2 * float(HIP_IN_PELVIS[2]))
     origin = hips - rotations.through(pelvis, scale * HIP_IN_PELVIS * (1, 1, 0))
     for axis, name in enumerate(("pelvis_tx", "pelvis_ty", "pelvis_tz")):
         _add(found, name, origin[:, axis])

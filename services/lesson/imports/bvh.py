@@ -34,10 +34,10 @@ class _Joint:
 
 
 class _Words:
-    """The words of the head, each with its line, read one after the other."""
+    """The words of the head behind its first line, each with its line, read one after the other."""
 
     def __init__(self, lines: list[str], source: str) -> None:
-        self._words = [(number, word) for number, line in enumerate(lines, start=1) for word in line.split()]
+        self._words = [(number, word) for number, line in enumerate(lines, start=2) for word in line.split()]
         self._at = 0
         self._source = source
 

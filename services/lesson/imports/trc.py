@@ -13,6 +13,8 @@ from services.lesson.imports.text import lines_of
 
 _UNITS_M: Final = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "meters": 1.0}
 _HEAD = 5
+_ONE_LESS = 1
+"""Pose2Sim 0.10 says one frame more than there is in what it has filtered."""
 _OFF_TIME = 0.01
 """Of a step, that times may be beside the rate: as much as a track allows."""
 
@@ -47,11 +49,11 @@ def decode(data: bytes, source: str) -> Track:
     if len(names) != markers:
         raise UserError(f"{source} names {len(names)} markers and says that it has {markers}; export it again")
     rows = [(number, line) for number, line in enumerate(lines[_HEAD:], start=_HEAD + 1) if line.strip()]
-    if len(rows) != frames:
+    if not frames - _ONE_LESS <= len(rows) <= frames:
         raise UserError(f"{source} has {len(rows)} frames and says that it has {frames}; it is cut off; copy or export it again")
     values = np.array([_row(line, markers, number, source) for number, line in rows])
     _require_even(values[:, 1], rate_hz, source)
-    return track_of_points(NamedPoints(source, names, values[:, 2:].reshape(frames, markers, 3), unit_m, rate_hz), OPENSIM)
+    return track_of_points(NamedPoints(source, names, values[:, 2:].reshape(len(rows), markers, 3), unit_m, rate_hz), OPENSIM)
 
 
 def _number(said: dict[str, str], key: str, source: str) -> float:

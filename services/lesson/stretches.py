@@ -1,0 +1,96 @@
+"""The smooth motion of a recorded lesson, as tracks, and the attempts that were found while it was recorded.
+
+A stretch has one clock and no jump: a lesson has one, and one more after every gap and whenever its source begins anew.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from models.errors import UserError
+from models.messages.feedback import Feedback
+from models.messages.motion import Motion
+from services.evaluation.attempt import FoundAttempt
+from services.evaluation.track import Track, track_of
+from services.lesson.lesson_reader import LessonPart
+from services.lesson.replay import decode
+
+_ROUNDING_S = 1e-6
+
+
+@dataclass(frozen=True)
+class LessonAttempt:
+    """An attempt as evaluation found it during the lesson.
+
+    Attributes:
+        number: counts the attempts of the lesson from 1.
+        found: its keyframes are on CLOCK_MONOTONIC.
+        first_s, last_s: the frames that were shown of it, with a little before and after, on the same clock.
+    """
+
+    number: int
+    found: FoundAttempt
+    first_s: float
+    last_s: float
+
+
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """Motion without a jump.
+
+    Attributes:
+        track: on CLOCK_MONOTONIC.
+        attempts: those that lie in it as a whole, in their order.
+    """
+
+    track: Track
+    attempts: tuple[LessonAttempt, ...]
+
+    def of_attempt(self, attempt: LessonAttempt) -> "Stretch":
+        """The frames of one attempt, and it alone."""
+        last = len(self.track) - 1
+        first, end = (min(max(round(self.track.frame_at(t_s)), 0), last) for t_s in (attempt.first_s, attempt.last_s))
+        return Stretch(self.track.part(first, end + 1), (attempt,))
+
+
+def stretches(parts: Iterable[LessonPart], frame_s: float, watch: Callable[[int], None] = lambda _t_ns: None) -> list[Stretch]:
+    """All stretches of a lesson in their order; empty if no motion was recorded.
+
+    Args:
+        parts: as the lesson's reader gives them.
+        frame_s: from one smooth motion to the next, as fusion was configured.
+        watch: is told the time of each motion, CLOCK_MONOTONIC.
+
+    Raises:
+        UserError: an entry cannot be read, or motions do not follow one another in that step.
+    """
+    motions: dict[tuple[int, int], list[Motion]] = {}
+    attempts: dict[tuple[int, int], list[LessonAttempt]] = {}
+    segment = number = 0
+    for part in parts:
+        segment += part.begins_segment
+        for entry in part.entries:
+            if entry.kind == "motion":
+                motion = decode(entry, Motion)
+                motions.setdefault((segment, motion.epoch), []).append(motion)
+                watch(motion.t_ns)
+            elif entry.kind == "feedback":
+                number += 1
+                feedback = decode(entry, Feedback)
+                attempts.setdefault((segment, feedback.epoch), []).append(_attempt(number, feedback))
+    try:
+        tracks = {key: track_of(those, frame_s) for key, those in motions.items()}
+    except ValueError as error:
+        raise UserError(f"the lesson's motion is not as fusion makes it: {error}; use the KineBox that recorded it") from error
+    return [Stretch(track, _within(track, attempts.get(key, []))) for key, track in tracks.items()]
+
+
+def _attempt(number: int, feedback: Feedback) -> LessonAttempt:
+    start, exertion, peak, end = (t_ns * 1e-9 for t_ns in feedback.keyframes_ns)
+    found = FoundAttempt(feedback.action, feedback.handed, (start, exertion, peak, end))
+    last_ns = feedback.t_first_ns + (len(feedback.states) - 1) * feedback.frame_ns
+    return LessonAttempt(number, found, feedback.t_first_ns * 1e-9, last_ns * 1e-9)
+
+
+def _within(track: Track, attempts: list[LessonAttempt]) -> tuple[LessonAttempt, ...]:
+    first_s, last_s = float(track.t_s[0]) - _ROUNDING_S, float(track.t_s[-1]) + _ROUNDING_S
+    return tuple(each for each in attempts if first_s <= each.found.moments_s[0] and each.found.moments_s[-1] <= last_s)
