@@ -33,7 +33,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions lock clean distclean test-faults test-mutations test-motions test-rendering bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-simulate bench-networks twin
+.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions standards check-standards lock clean distclean test-faults test-mutations test-motions test-rendering bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-simulate bench-networks twin
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
@@ -190,6 +190,12 @@ motions: build/motions/.ready ## Export the recorded motion anew (it is in the r
 
 check-motions: build/motions/.ready ## Compare the recorded motion with a fresh export
 	build/motions/bin/python -m models.motions.build.export --check
+
+standards: $(VENV)/.ready ## Export the standards of the simulated library anew (they are in the repository; only its maintainers need this)
+	$(PYTHON) -m models.teaching.build.export
+
+check-standards: $(VENV)/.ready ## Compare the standards with a fresh export
+	$(PYTHON) -m models.teaching.build.export --check
 
 .PHONY: strips
 strips: $(VENV)/.ready ## Film every action with its faults anew, for docs/actions

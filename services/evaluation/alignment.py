@@ -9,8 +9,9 @@ Unknown joints have no part: what the known ones are apart is counted for them a
 by nothing.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -90,8 +91,8 @@ def warp(ours: Float, theirs: Float, radius: int | None = None) -> Alignment:
     if not len(ours) or not len(theirs) or ours.shape[1:] != theirs.shape[1:] or (radius is not None and radius < 0):
         raise ValueError(f"motions of the shapes {ours.shape} and {theirs.shape} cannot be aligned within {radius} frames")
     wide = max(len(ours), len(theirs)) if radius is None else radius
-    flat = (np.ascontiguousarray(motion.reshape(len(motion), -1), np.float64) for motion in (ours, theirs))
-    costs = _accumulated(*flat, wide)
+    one, other = (np.ascontiguousarray(motion.reshape(len(motion), -1), np.float64) for motion in (ours, theirs))
+    costs = _accumulated(one, other, wide)
     return Alignment(float(costs[-1, -1]), _path(costs))
 
 
@@ -124,6 +125,15 @@ class Spring:
     def starts(self) -> Counts:
         """(N,) the frame at which it began."""
         return np.asarray(self._starts[self._firsts[1:] - 1])
+
+    def ahead(self) -> Iterator[tuple[Float, Counts]]:
+        """Of each template: (S,) costs of the best performances that have come as far as each of its frames, and their starts."""
+        for first, end in pairwise(self._firsts.tolist()):
+            yield self._costs[first:end], self._starts[first:end]
+
+    def forget(self, until: int) -> None:
+        """Performances that began at frame `until` or before have no part any more."""
+        self._costs[self._starts <= until] = np.inf
 
     def push(self, joints: Float) -> None:
         """Take the next frame, (K, 3); NaN is unknown."""

@@ -1,0 +1,1 @@
+"""Set-up code: exports the standards of the simulated library."""
