@@ -85,13 +85,13 @@ class Fault(Table, frozen=True, kw_only=True):
 class Tolerance(Table, frozen=True, kw_only=True):
     """How far a joint may be from the standard, in percent of the pupil's stature, before it is yellow; red is twice that."""
 
-    head: _Tolerance = 6.0
-    shoulder: _Tolerance = 6.0
-    elbow: _Tolerance = 8.0
-    wrist: _Tolerance = 10.0
-    hip: _Tolerance = 6.0
-    knee: _Tolerance = 7.0
-    ankle: _Tolerance = 8.0
+    head: _Tolerance = 5.5
+    shoulder: _Tolerance = 5.5
+    elbow: _Tolerance = 5.5
+    wrist: _Tolerance = 7.0
+    hip: _Tolerance = 5.0
+    knee: _Tolerance = 6.5
+    ankle: _Tolerance = 6.0
 
 
 class Teaching(Table, frozen=True, kw_only=True):

@@ -21,7 +21,7 @@ def test_what_a_file_says_is_read() -> None:
     assert shallow.evidence[0].stretch == ("start", 0, "peak", 0)
     assert shallow.evidence[1].stretch == ("peak", -0.1, "peak", 0.1)
     assert forward.cue.of("de") == "Nimm die Brust hoch."
-    assert teaching.tolerance.wrist == 10
+    assert teaching.tolerance.wrist == 7
 
 
 WRONG = {
