@@ -33,7 +33,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions standards check-standards lock clean distclean test-faults test-mutations test-motions test-rendering bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-simulate bench-networks twin
+.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions standards check-standards lock clean distclean test-faults test-mutations test-motions test-rendering bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-simulate bench-networks bench-keyframes twin
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
@@ -105,10 +105,11 @@ $(DATA)/bytecode.ready: $(shell find edge models services -name '*.py' -not -pat
 	@touch $@
 
 kernels: $(DATA)/kernels/.ready ## Compile the numerical kernels, so that no live frame waits for it
-$(DATA)/kernels/.ready: models/compiled.py $(wildcard services/fusion/*.py) | $(VENV)/.ready
+$(DATA)/kernels/.ready: models/compiled.py $(wildcard services/fusion/*.py services/evaluation/*.py) | $(VENV)/.ready
 	@mkdir -p $(@D)
 	@echo "Compiling numerical kernels ..."
-	@$(PYTHON) -c "from services.fusion.warm_up import warm_up; warm_up()"
+	@$(PYTHON) -c "from services.fusion.process import prepare; prepare()"
+	@$(PYTHON) -c "from services.evaluation.process import prepare; prepare()"
 	@touch $@
 
 test-faults: setup $(FILM_OF_footage) ## The box killed, stopped and starved: every fault drill once, on the real processes
@@ -158,6 +159,9 @@ bench-simulate: $(VENV)/.ready kernels ## Time and memory that rendering a lesso
 
 bench-networks: $(VENV)/.ready networks kernels ## How well the pose networks see simulated pupils, and the landmark bias
 	$(PYTHON) -m tests.bench.networks --data $(DATA) $(ARGS)
+
+bench-keyframes: $(VENV)/.ready kernels ## Attempts and keyframes on true motion and on the twin, and half an hour without one (ARGS=--on true|twin|idle)
+	$(PYTHON) -m tests.bench.teaching.keyframes --data $(DATA) $(ARGS)
 
 twin: $(VENV)/.ready networks kernels ## Fit the twin to rendered lessons anew (the first time they are rendered, which takes hours), and print how far it agrees
 	$(PYTHON) -m tests.bench.twin --data $(DATA) $(ARGS)

@@ -135,8 +135,12 @@ class Spring:
         """Performances that began at frame `until` or before have no part any more."""
         self._costs[self._starts <= until] = np.inf
 
+    def skip(self) -> None:
+        """The next frame is not known: no performance goes on in it, none ends, and none is given up."""
+        self._count += 1
+
     def push(self, joints: Float) -> None:
-        """Take the next frame, (K, 3); NaN is unknown."""
+        """Take the next frame, (K, 3); NaN is unknown. One without a known joint is as good as any frame: `skip` it."""
         frame = np.ascontiguousarray(joints.ravel(), np.float64)
         _advance(frame, self._frames, self._firsts, self._count, self._costs, self._starts)
         self._count += 1

@@ -42,6 +42,7 @@ class FindingConfig:
         patience_s: how long it is waited at most for something else that is under way.
         under_way: share of it that must have been performed for that.
         better: share of the distance that the other one must keep below.
+        seen: share of the joints that must be known in a frame; others are passed over.
         known: share of the joints that must be known on average.
         performances: of each standard that are compared.
     """
@@ -52,6 +53,7 @@ class FindingConfig:
     patience_s: float = 1.5
     under_way: float = 0.35
     better: float = 0.8
+    seen: float = 0.5
     known: float = 0.7
     performances: int = 4
 
@@ -108,10 +110,10 @@ class AttemptFinder:
         Raises:
             ValueError: there is no standard of it.
         """
-        self._asked = np.array([activity in {None, template.action} for template in self._templates])
-        if not self._asked.any():
+        asked = np.array([activity in {None, template.action} for template in self._templates])
+        if not asked.any():
             raise ValueError(f"there is no standard of '{activity}'")
-        self._candidate = None
+        self._asked, self._candidate = asked, None
 
     def reset(self) -> None:
         """The stream begins anew."""
@@ -144,9 +146,12 @@ class AttemptFinder:
         features = self._features.push(joints_m)
         known = float(np.isfinite(features[:, 0]).mean())
         self._known.append(known + (self._known[-1] if self._known else 0.0))
-        self._spring.push(features)
         self._count += 1
-        self._consider()
+        if known >= self._config.seen:
+            self._spring.push(features)
+            self._consider()
+        else:
+            self._spring.skip()
         if self._candidate is None or not self._is_over(self._candidate):
             return None
         candidate, self._candidate = self._candidate, None
@@ -239,8 +244,9 @@ def _templates(action: str, exemplar: Exemplar, symmetric: bool) -> Iterator[_Te
     sides: list[tuple[Handed, Float]] = [("right", exemplar.joints_m), ("left", mirrored(exemplar.joints_m))]
     for handed, joints in sides[: 1 if symmetric else 2]:
         features = features_of(joints, FRAME_S)[first : last + 1]
-        apart = np.nan_to_num(((features - features[0]) ** 2).sum(axis=2))
-        yield _Template(action, handed, features, np.cumsum(apart.sum(axis=1)))
+        still = np.cumsum(np.nan_to_num(((features - features[0]) ** 2).sum(axis=2)).sum(axis=1))
+        if still[-1] > 0:
+            yield _Template(action, handed, features, still)
 
 
 def _is_symmetric(standard: Standard) -> bool:

@@ -64,7 +64,8 @@ class Features:
         one = np.where(np.isnan(lengths[0]), lengths[1], np.where(np.isnan(lengths[1]), lengths[0], lengths.mean(axis=0)))
         if not np.isnan(one).any():
             self._sizes.append(one)
-            self._size = float(np.median(np.array(self._sizes), axis=0).sum())
+            size = float(np.median(np.array(self._sizes), axis=0).sum())
+            self._size = size if size > 0 else np.nan
 
 
 def features_of(joints_m: Float, frame_s: float) -> Float:

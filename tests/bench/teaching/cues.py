@@ -32,7 +32,7 @@ from tests.bench.report import Report
 from tests.bench.seeds import COUNT, seeds_of
 from tests.bench.table import Cell, ResultTable
 from tests.bench.teaching.cases import Case, double, single, well
-from tests.bench.teaching.lessons import lesson_of
+from tests.bench.teaching.lessons import lesson_of_all
 from tests.bench.teaching.noise import as_fused
 from tests.bench.teaching.performed import RATE_HZ, Performed, kept
 from tests.bench.teaching.twinned import around, attempt_of, smooth_of, truth_of
@@ -93,8 +93,7 @@ def on_twin(split: Split, seeds: Sequence[int], data: Path) -> list[Result]:
     """Whole lessons through the twin and fusion."""
     results = []
     for seed in seeds:
-        cases = [*well(split, seed), *single(split, seed)]
-        plan = lesson_of(f"teaching-cues-{seed}", split, seed, cases)
+        plan = lesson_of_all(split, seed)
         truth = truth_of(plan)
         track = smooth_of(plan, truth, data)
         for true in truth.motion.attempts:

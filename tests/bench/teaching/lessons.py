@@ -11,7 +11,7 @@ from edge.simulation.split import Split, generator
 from models.motions.between import LEAST_S, PASTIMES
 from models.motions.motion import Handed
 from tests.bench.seeds import seeds_of
-from tests.bench.teaching.cases import Case, filmed
+from tests.bench.teaching.cases import Case, filmed, single, well
 
 _TRAVELS_M: Final = {
     "volleyball_spike": 1.1,
@@ -44,6 +44,11 @@ def lesson_of(name: str, split: Split, seed: int, cases: Sequence[Case]) -> Plan
         back = not back if cases[number].action in _TRAVELS_M else back
     pupil = PupilPlan(name="pupil", age_years=age_years, place_m=(-1.5, -1.0), performs=performs)
     return Plan(version=PLAN_VERSION, name=name, seed=seed, split=split, pupils=[pupil])
+
+
+def lesson_of_all(split: Split, seed: int) -> Plan:
+    """A lesson in which a pupil tries everything well, twice, and with each fault."""
+    return lesson_of(f"teaching-cues-{seed}", split, seed, [*well(split, seed), *single(split, seed)])
 
 
 def filmed_lesson(split: Split, seed: int) -> Plan:

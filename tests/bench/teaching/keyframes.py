@@ -1,0 +1,212 @@
+"""Attempts and keyframes as they are found, beside the true ones: `make bench-keyframes`, the paper's Figure 9.
+
+Lessons are of test pupils: on true motion at 30 Hz; on the twin, through fusion as the box runs it; and half an hour of walking,
+waiting and all else that pupils do between attempts, on the twin. Beside what is found with the standards stands what equation 17
+finds alone: the maxima of the motion's energy.
+"""
+
+import argparse
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from edge.simulation.lesson.plan import PLAN_VERSION, Plan, PupilPlan
+from edge.simulation.lesson.stage import member_of
+from edge.simulation.split import SPLITS, Split, generator
+from models.errors import UserError
+from models.motions.actions.library import ACTIONS
+from models.motions.between import Between, idle_time, spend
+from models.motions.motion import Motion
+from models.motions.sequence import Sequence as Acts
+from models.motions.standpoint import Standpoint
+from models.motions.subject import Subject
+from services.evaluation.alignment import warp
+from services.evaluation.attempt import PHASES
+from services.evaluation.attempts import AttemptFinder
+from services.evaluation.track import Track, known_track
+from tests.bench.report import Report
+from tests.bench.seeds import COUNT, seeds_of
+from tests.bench.table import Cell, ResultTable
+from tests.bench.teaching.finding import (
+    SIX,
+    Found,
+    attempt_f1,
+    delays_s,
+    energy_f1,
+    find,
+    keyframe_f1,
+    moments_s,
+    shipped,
+)
+from tests.bench.teaching.lessons import lesson_of_all
+from tests.bench.teaching.twinned import TRACK_HZ, Truth, smooth_of, truth_of
+
+IDLE_S: Final = 1800.0
+_PIECE_S: Final = 360.0
+"""Each pupil idles for so long."""
+_AFTER_S: Final = 1.5
+"""The pupil stands for so long after his last attempt."""
+_AREA_M: Final = (2.2, 1.6)
+BARS: Final = {
+    "keyframe_f1.true_motion": (">=", 0.98),
+    "keyframe_f1.twin": (">=", 0.93),
+    "attempt_f1.true_motion": (">=", 0.97),
+    "attempt_f1.twin": (">=", 0.97),
+    "false_attempts_per_5min.twin": ("<=", 0.0),
+    "decision_delay_s.twin.p95": ("<=", 0.65),
+    "evaluation_ms": ("<=", 1.0),
+    "dtw_ms": ("<=", 1.5),
+}
+
+
+def on_true_motion(split: Split, seeds: Sequence[int]) -> Iterator[tuple[Track, Found]]:
+    """Whole lessons as they are truly performed."""
+    for seed in seeds:
+        truth = truth_of(lesson_of_all(split, seed))
+        t_s = np.arange(int((truth.motion.duration_s + _AFTER_S) * TRACK_HZ)) / TRACK_HZ
+        track = known_track(truth.joints_m(t_s), 1 / TRACK_HZ)
+        yield track, find(track, truth.motion.attempts)
+
+
+def on_twin(split: Split, seeds: Sequence[int], data: Path) -> Iterator[tuple[Track, Found]]:
+    """The same lessons through the twin and fusion."""
+    for seed in seeds:
+        plan = lesson_of_all(split, seed)
+        truth = truth_of(plan)
+        track = smooth_of(plan, truth, data)
+        yield track, find(track, truth.motion.attempts)
+
+
+def idle_on_twin(split: Split, seeds: Sequence[int], data: Path, seconds: float = IDLE_S) -> Iterator[tuple[Track, Found]]:
+    """Pupils who do anything but an action, through the twin and fusion."""
+    for number in range(int(np.ceil(seconds / _PIECE_S))):
+        plan, truth = idling(split, seeds[number % len(seeds)], number)
+        track = smooth_of(plan, truth, data)
+        yield track, find(track, ())
+
+
+def idling(split: Split, seed: int, number: int) -> tuple[Plan, Truth]:
+    """Somebody who walks and jogs about, waits, stretches, bends, scratches and claps; he differs from number to number."""
+    random = generator(split, f"teaching idle {number}", seed)
+    years = float(np.round(random.uniform(7.0, 16.0), 1))
+    plan = Plan(
+        version=PLAN_VERSION,
+        name=f"teaching-idle-{number}",
+        seed=seed,
+        split=split,
+        pupils=[PupilPlan(name="pupil", age_years=years, performs=[])],
+    )
+    subject = member_of(plan, 0).subject
+
+    def somewhere(draw: np.random.Generator) -> Standpoint:
+        x_m, y_m = (float(draw.uniform(-half, half)) for half in _AREA_M)
+        return Standpoint(x_m, y_m, float(draw.uniform(-np.pi, np.pi)))
+
+    acts = [partial(_spent, what, subject) for what in idle_time(_PIECE_S, somewhere, int(random.integers(2**31)))]
+    return plan, Truth(subject, Acts(acts).motion())
+
+
+def _spent(what: Between, subject: Subject, at: Standpoint) -> Motion:
+    return spend(what, subject, at)
+
+
+def figures(lessons: Sequence[Found], where: str) -> dict[str, float]:
+    """What the lessons come to, under the names of the figures; `where` is "true_motion" or "twin"."""
+    out = {f"keyframe_f1.{where}.{action}": keyframe_f1(lessons, action) for action in SIX}
+    out[f"keyframe_f1.{where}"] = float(np.mean([keyframe_f1(lessons, action) for action in SIX]))
+    out[f"keyframe_f1.{where}.energy_alone"] = float(np.mean([energy_f1(lessons, action) for action in SIX]))
+    out[f"attempt_f1.{where}"] = attempt_f1(lessons)
+    delays = delays_s(lessons)
+    if delays:
+        out[f"decision_delay_s.{where}.p95"] = float(np.percentile(delays, 95))
+    return out
+
+
+def table(lessons: Sequence[Found], where: str) -> ResultTable:
+    """By action: attempts, keyframes, energy alone, and how far keyframes are off."""
+    rows: list[tuple[Cell, ...]] = []
+    for action in ACTIONS:
+        phases = [keyframe_f1(lessons, action, number) for number in range(len(PHASES))]
+        apart = np.array(
+            [
+                np.array(found.attempt.moments_s) - moments_s(true)
+                for one in lessons
+                for true, found in one.pairs
+                if true.action == action
+            ]
+        )
+        rows.append(
+            (
+                action,
+                float(sum(true.action == action for one in lessons for true in one.true)),
+                attempt_f1(lessons, action),
+                keyframe_f1(lessons, action),
+                *phases,
+                1000 * float(np.median(np.abs(apart))) if len(apart) else None,
+                energy_f1(lessons, action),
+            )
+        )
+    columns = ("action", "n", "attempts F1", "keyframes F1", *PHASES, "median error, ms", "equation 17 alone")
+    return ResultTable(f"{where}: keyframes within 3 frames of 30 a second", columns, tuple(rows))
+
+
+def speed() -> dict[str, float]:
+    """CPU ms of one thread: a frame of the finder, and an alignment of 300 with 300 frames of 17 joints."""
+    random = np.random.default_rng(0)
+    motion = random.normal(size=(300, 17, 3)).cumsum(axis=0) * 0.01
+    finder = AttemptFinder(shipped())
+    aligned, pushed = [], []
+    for number, joints in enumerate(motion):
+        began = time.thread_time()
+        finder.push(joints, number / TRACK_HZ)
+        pushed.append(time.thread_time() - began)
+    for _ in range(50):
+        began = time.thread_time()
+        warp(motion, motion[::-1])
+        aligned.append(time.thread_time() - began)
+    return {"evaluation_ms": 1000 * float(np.mean(pushed[10:])), "dtw_ms": 1000 * float(np.median(aligned[5:]))}
+
+
+def main() -> int:
+    """Measure, print, write; returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, required=True)
+    parser.add_argument("--split", choices=SPLITS, default="test", help="development, to tune")
+    parser.add_argument("--seeds", type=int, default=COUNT, help="pupils")
+    parser.add_argument("--on", choices=("true", "twin", "idle"), action="append", help="only this; all if left out")
+    options = parser.parse_args()
+    seeds, split = seeds_of(options.split, options.seeds), options.split
+    report = Report("bench-keyframes", seeds)
+    report.add(speed())
+    try:
+        if options.on is None or "true" in options.on:
+            _add(report, "true_motion", on_true_motion(split, seeds))
+        if options.on is None or "twin" in options.on:
+            _add(report, "twin", on_twin(split, seeds, options.data))
+        if options.on is None or "idle" in options.on:
+            idle = [one for _, one in idle_on_twin(split, seeds, options.data)]
+            minutes = sum(one.seconds for one in idle) / 60
+            report.add(
+                {"idle_minutes.twin": minutes, "false_attempts_per_5min.twin": 5 * sum(len(one.false) for one in idle) / minutes}
+            )
+    except UserError as error:
+        sys.stderr.write(f"bench-keyframes: {error}\n")
+        return 2
+    report.show(BARS)
+    print(f"written to {report.write(options.data)}")
+    return 0
+
+
+def _add(report: Report, where: str, lessons: Iterator[tuple[Track, Found]]) -> None:
+    found = [one for _, one in lessons]
+    report.add(figures(found, where))
+    report.tables.append(table(found, where))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
