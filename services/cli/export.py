@@ -21,6 +21,8 @@ from services.lesson.stretches import Stretch, stretches
 from services.logs.printable import printable
 from services.support.new_file import write_new
 
+_LONGEST_CODE = 40
+
 
 def export(file: Path, kind: Format, folder: Path, attempt: int | None, pupil: str) -> None:
     """Write a lesson's motion into a folder, and say what was written.
@@ -33,9 +35,11 @@ def export(file: Path, kind: Format, folder: Path, attempt: int | None, pupil: s
         pupil: code that is put into the files.
 
     Raises:
-        UserError: the file is no lesson that can be read, there is nothing in it to export, there is no such attempt, or it cannot
-            be written; nothing was written then, or only files before it, whole.
+        UserError: the pupil has no code that can be written, the file is no lesson that can be read, there is nothing in it to
+            export, there is no such attempt, or it cannot be written; nothing was written then, or only files before it, whole.
     """
+    if not (pupil.isprintable() and len(pupil) <= _LONGEST_CODE):
+        raise UserError(f"--pupil: a code has at most {_LONGEST_CODE} characters that can be printed; choose another")
     found = _read(file)
     name = file.name.removesuffix(SUFFIX)
     takes = _all(found, name, pupil, file) if attempt is None else [_one(found, attempt, name, pupil, file)]

@@ -223,6 +223,12 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
     assert "cannot be written" in refusal(with_attempts(tmp_path / "lessons"), tmp_path / "out")
 
 
+@pytest.mark.parametrize("code", ["P" * 41, "P\n07", "P\udcff"])
+def test_a_code_that_fits_into_no_file_is_refused(tmp_path: Path, code: str) -> None:
+    with pytest.raises(UserError, match="--pupil: a code has at most 40 characters"):
+        export(with_attempts(tmp_path), Format.GLB, tmp_path, None, code)
+
+
 @pytest.mark.slow
 def test_as_people_type_it(tmp_path: Path) -> None:
     file = with_attempts(tmp_path / "data/lessons")

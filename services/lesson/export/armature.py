@@ -16,6 +16,7 @@ from models.arrays import Bool, Float
 from models.motions import rotations
 from models.skeleton import coco
 from models.skeleton.segment_axes import segment_axes
+from services.lesson.export.directions import complete, pair
 from services.lesson.export.holding import held
 from services.lesson.export.take import Take, TakeError
 
@@ -83,7 +84,7 @@ def armature(take: Take) -> Armature:
         TakeError: both hips and both shoulders are nowhere known at once, and nothing can hang on them.
     """
     seen = _seen(take.joints_m)
-    if not _complete(seen[0].axes).any():
+    if not complete(seen[0].axes).any():
         raise TakeError("has no frame in which both hips and both shoulders are known, without which there are no bones")
     bones: list[Bone] = []
     places: dict[str, int] = {"": -1}
@@ -97,7 +98,7 @@ def armature(take: Take) -> Armature:
         if parent is None or offset is None:
             continue
         before = world[parent] if parent >= 0 else np.broadcast_to(np.eye(3), each.axes.shape)
-        known = _complete(each.axes)
+        known = complete(each.axes)
         turn = before.swapaxes(1, 2) @ each.axes
         turn = held(turn, known) if known.any() else np.broadcast_to(np.eye(3), turn.shape)
         places[each.name] = len(bones)
@@ -185,15 +186,11 @@ def _median(values: Float) -> Float:
 
 def _sideways(left: Float, up: Float) -> Float:
     """(T, 3, 3) axes with exactly this left, and up as near as can be."""
-    y, z, x = np.moveaxis(rotations.frame(left, up), -1, 0)
-    return np.stack((x, y, z), axis=-1)
+    y, z = pair(left, up)
+    return np.stack((np.cross(y, z), y, z), axis=-1)
 
 
 def _upwards(up: Float, left: Float) -> Float:
     """(T, 3, 3) axes with exactly this up, and left as near as can be."""
-    z, y, minus_x = np.moveaxis(rotations.frame(up, left), -1, 0)
-    return np.stack((-minus_x, y, z), axis=-1)
-
-
-def _complete(axes: Float) -> Bool:
-    return np.asarray(np.isfinite(axes).all(axis=(1, 2)))
+    z, y = pair(up, left)
+    return np.stack((np.cross(y, z), y, z), axis=-1)

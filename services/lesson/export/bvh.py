@@ -5,6 +5,7 @@ import numpy as np
 from models.arrays import Float
 from services.lesson.export.armature import Armature, Bone, armature
 from services.lesson.export.axes import FIGURES
+from services.lesson.export.rows import rows
 from services.lesson.export.take import Take
 from services.lesson.export.zxy import zxy_deg
 
@@ -23,7 +24,7 @@ def encode(take: Take) -> bytes:
     lines = ["HIERARCHY", *_joint(tree.bones, 0, ""), "MOTION", f"Frames: {len(take.track)}"]
     lines.append(f"Frame Time: {1 / take.rate_hz:.8f}")
     columns = [FIGURES.to(tree.root_m) * _CM] + [zxy_deg(FIGURES.turns_to(tree.turns[:, bone])) for bone in _order(tree)]
-    lines += [" ".join(row) for row in np.char.mod("%.4f", np.concatenate(columns, axis=1)).tolist()]
+    lines += rows(np.concatenate(columns, axis=1), 4, " ")
     return ("\n".join(lines) + "\n").encode()
 
 

@@ -15,10 +15,12 @@ from typing import Final
 import numpy as np
 
 from models.arrays import Bool, Float
-from models.motions import rotations
+from models.motions.rotations import through
 from models.skeleton import coco
 from services.lesson.export.axes import OPENSIM
+from services.lesson.export.directions import complete, pair, unit
 from services.lesson.export.holding import held
+from services.lesson.export.rows import rows
 from services.lesson.export.take import Take, TakeError
 from services.lesson.export.zxy import zxy_deg
 
@@ -38,11 +40,9 @@ def encode(take: Take) -> bytes:
         TakeError: both hips and both shoulders are nowhere known at once.
     """
     found = coordinates(take)
-    table = np.column_stack([values for values, _ in found.values()])
+    table = np.column_stack((take.seconds, *(values for values, _ in found.values())))
     head = ["Coordinates", "version=1", f"nRows={len(table)}", f"nColumns={len(found) + 1}", "inDegrees=yes", "endheader"]
-    rows = np.char.mod("%.6f", np.column_stack((take.seconds, table)))
-    lines = [*head, "\t".join(("time", *found)), *("\t".join(row) for row in rows.tolist())]
-    return ("\n".join(lines) + "\n").encode()
+    return ("\n".join((*head, "\t".join(("time", *found)), *rows(table, 6, "\t"))) + "\n").encode()
 
 
 def coordinates(take: Take) -> Coordinates:
@@ -52,13 +52,13 @@ def coordinates(take: Take) -> Coordinates:
     right_hips, right_shoulders = (point[f"right_{part}"] - point[f"left_{part}"] for part in ("hip", "shoulder"))
     pelvis = _pelvis_axes(right_hips, shoulders - hips)
     torso = _torso_axes(shoulders - hips, right_shoulders)
-    if not _complete(pelvis).any():
+    if not complete(pelvis).any():
         raise TakeError("has no frame in which both hips and both shoulders are known, without which there is no pelvis")
     found: Coordinates = {}
     _add_angles(found, pelvis, ("pelvis_tilt", "pelvis_list", "pelvis_rotation"))
     width = np.linalg.norm(right_hips, axis=1)
     scale = float(np.median(width[np.isfinite(width)])) / (2 * float(HIP_IN_PELVIS[2]))
-    origin = hips - rotations.through(pelvis, scale * HIP_IN_PELVIS * (1, 1, 0))
+    origin = hips - through(pelvis, scale * HIP_IN_PELVIS * (1, 1, 0))
     for axis, name in enumerate(("pelvis_tx", "pelvis_ty", "pelvis_tz")):
         _add(found, name, origin[:, axis])
     _add_angles(found, pelvis.swapaxes(1, 2) @ torso, ("", "lumbar_bending", "lumbar_rotation"))
@@ -95,10 +95,10 @@ def _add_limb(
         mirror: -1 for the left, where the model's second and third angle count the other way round.
         forwards: 1 if the limb bends to its front, as an elbow does, -1 to its back.
     """
-    first, second = (rotations.unit(segment) for segment in segments)
+    first, second = (unit(segment) for segment in segments)
     bend = np.rad2deg(np.arctan2(np.linalg.norm(np.cross(first, second), axis=1), np.sum(first * second, axis=1)))
     # Where the first segment points needs no elbow or knee.
-    x, y, z = rotations.through(carrier.swapaxes(1, 2), first).T
+    x, y, z = through(carrier.swapaxes(1, 2), first).T
     pointing = np.rad2deg((np.arctan2(x, -y), mirror * np.arctan2(-z, np.hypot(x, y))))
     for name, values in zip(names, pointing, strict=False):
         _add(found, name, values, turning=True)
@@ -109,7 +109,7 @@ def _add_limb(
 
 def _add_angles(found: Coordinates, turns: Float, names: tuple[str, str, str], mirror: float = 1.0) -> None:
     """Those of the three angles of (T, 3, 3) that have a name."""
-    known = _complete(turns)
+    known = complete(turns)
     if known.any():
         angles = zxy_deg(held(turns, known)) * (1.0, mirror, mirror)
         found.update({name: (angles[:, index], ~known) for index, name in enumerate(names) if name})
@@ -125,21 +125,17 @@ def _add(found: Coordinates, name: str, values: Float, *, turning: bool = False)
 
 def _pelvis_axes(right: Float, up: Float) -> Float:
     """(T, 3, 3) with exactly this right, and up as near as can be."""
-    z, y, minus_x = np.moveaxis(rotations.frame(right, up), -1, 0)
-    return np.stack((-minus_x, y, z), axis=-1)
+    z, y = pair(right, up)
+    return np.stack((np.cross(y, z), y, z), axis=-1)
 
 
 def _torso_axes(up: Float, right: Float) -> Float:
     """(T, 3, 3) with exactly this up, and right as near as can be."""
-    y, z, x = np.moveaxis(rotations.frame(up, right), -1, 0)
-    return np.stack((x, y, z), axis=-1)
+    y, z = pair(up, right)
+    return np.stack((np.cross(y, z), y, z), axis=-1)
 
 
 def _bent_axes(up: Float, front: Float) -> Float:
     """(T, 3, 3) with exactly this up, and front as near as can be."""
-    y, x, minus_z = np.moveaxis(rotations.frame(up, front), -1, 0)
-    return np.stack((x, y, -minus_z), axis=-1)
-
-
-def _complete(axes: Float) -> Bool:
-    return np.asarray(np.isfinite(axes).all(axis=(1, 2)))
+    y, x = pair(up, front)
+    return np.stack((x, y, np.cross(x, y)), axis=-1)

@@ -1,9 +1,8 @@
 """TRC, the text format of marker positions that OpenSim reads: millimetres, y up, nothing where a point is unknown."""
 
-import numpy as np
-
 from services.lesson.export.axes import OPENSIM
 from services.lesson.export.labels import LABELS
+from services.lesson.export.rows import rows
 from services.lesson.export.take import Take
 
 SUFFIX = ".trc"
@@ -23,9 +22,8 @@ def encode(take: Take) -> bytes:
         "",
     ]
     values = OPENSIM.to(take.joints_m).reshape(count, -1) * _MM
-    texts = np.where(np.isfinite(values), np.char.mod("%.2f", values), "")
-    rows = (
-        f"{frame}\t{seconds:.6f}\t" + "\t".join(row)
-        for frame, (seconds, row) in enumerate(zip(take.seconds, texts.tolist(), strict=True), start=1)
+    lines = (
+        f"{frame}\t{seconds:.6f}\t{line}"
+        for frame, (seconds, line) in enumerate(zip(take.seconds, rows(values, 2, "\t"), strict=True), start=1)
     )
-    return ("\n".join((*head, *rows)) + "\n").encode()
+    return ("\n".join((*head, *lines)) + "\n").encode()
