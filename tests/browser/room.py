@@ -4,19 +4,31 @@ import socket
 import threading
 import time
 from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
 
 from models.camera.rig import Rig
 from models.config.site import SITE_VERSION, CameraConfig, Site, TabletConfig
 from models.messages import codec, topics
-from models.messages.health import CameraHealth, FusionHealth, Health, MachineHealth, RecorderHealth, Restarts, SupervisorHealth
+from models.messages.feedback import ANY, ActivityRequest, Feedback
+from models.messages.health import (
+    CameraHealth,
+    EvaluationHealth,
+    FusionHealth,
+    Health,
+    MachineHealth,
+    RecorderHealth,
+    Restarts,
+    SupervisorHealth,
+)
 from models.messages.motion import CameraUse, JointState, Motion
 from models.messages.trouble import Trouble
 from models.process import Bus, ProcessContext, Resources
 from models.skeleton import coco
 from services.bus.memory import MemoryBus, MemoryRouter
 from services.tablet import process
+from tests.browser.attempts import ending
 from tests.synthetic.gym import ring_rig
 from tests.synthetic.person import Person
 
@@ -47,6 +59,7 @@ class Scene:
         pupil: what fusion says about the pupil.
         troubles: what fusion says is wrong.
         machine: what the supervisor measured of the machine.
+        evaluating: what the evaluation sees the pupil do; None while there is none.
         recorded_s: length of the lesson that is being recorded; None while none is.
     """
 
@@ -59,6 +72,7 @@ class Scene:
     pupil: str = "found"
     troubles: tuple[Trouble, ...] = ()
     machine: MachineHealth = MACHINE
+    evaluating: Literal["waiting", "moving", "unknown"] | None = "waiting"
     recorded_s: float | None = None
 
 
@@ -71,6 +85,9 @@ class Room:
         self.person = person or Person(height_m=1.6, radius_m=0.7)
         self._router = MemoryRouter()
         self._fusion = self._router.open()
+        self._evaluation: MemoryBus | None = None
+        self._activity: tuple[str, Literal["site", "tablet"]] = (ANY, "site")
+        self._said_of_evaluation: object = None
         self._edges: dict[str, MemoryBus] = {}
         self._stop = threading.Event()
         self._server: _Server | None = None
@@ -107,7 +124,19 @@ class Room:
             self._server.stop()
             self._server = None
 
+    def attempt(self, made: Feedback) -> int:
+        """Let an attempt end now; returns its id."""
+        feedback = ending(made, time.monotonic_ns() - 400_000_000)
+        self._fusion.publish(topics.feedback(), codec.encode(feedback))
+        return feedback.id
+
+    @property
+    def activity(self) -> str:
+        """What the synthetic evaluation was asked for; empty for any action."""
+        return self._activity[0]
+
     def _publish(self) -> None:
+        asked = self._fusion.subscribe(topics.activity_request(), keep=4)
         sequence, t_person_s, healthy_ns = 0, 0.0, 0
         while not self._stop.wait(1 / LIVE_HZ):
             scene = self.scene
@@ -118,6 +147,9 @@ class Room:
                 self._fusion.publish(topics.motion("live"), codec.encode(motion))
                 sequence += 1
             self._keep_edges(scene)
+            while (request := asked.receive(0.0)) is not None:
+                self._activity = codec.decode(request.payload, ActivityRequest).activity, "tablet"
+            self._keep_evaluation(scene, now_ns)
             if now_ns - healthy_ns > 1_000_000_000:
                 healthy_ns = now_ns
                 self._publish_health(scene, now_ns)
@@ -150,6 +182,23 @@ class Room:
             elif camera not in scene.lost and camera not in self._edges:
                 self._edges[camera] = self._router.open()
                 self._edges[camera].declare_alive(topics.alive(f"edge-{camera}"))
+
+    def _keep_evaluation(self, scene: Scene, now_ns: int) -> None:
+        if scene.evaluating is None:
+            if self._evaluation is not None:
+                self._evaluation.close()
+                self._evaluation = None
+            return
+        if self._evaluation is None:
+            self._evaluation = self._router.open()
+            self._evaluation.declare_alive(topics.alive("evaluation"))
+        # Said at once when it changes, and else about once a second.
+        news = (*self._activity, scene.evaluating, now_ns // 1_000_000_000)
+        if news == self._said_of_evaluation:
+            return
+        self._said_of_evaluation = news
+        health = EvaluationHealth(*self._activity, scene.evaluating, 0, 0.4, 31.0, 0, 0)
+        self._say(self._evaluation, Health("evaluation", 97, now_ns, "ok", (), 0.05, 150.0, evaluation=health))
 
     def _publish_health(self, scene: Scene, now_ns: int) -> None:
         for index, (camera, bus) in enumerate(self._edges.items()):

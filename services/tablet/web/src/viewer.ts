@@ -4,7 +4,10 @@ import { Link } from './connection/link';
 import { makerOf, phaseOf, type Phase } from './connection/phase';
 import { complete, showsSomebody, standing, unsure, type Pose } from './figure/pose';
 import { JointState, MotionFrameError, readMotionFrame, type MotionFrame } from './protocol/motionFrame';
-import type { Status } from './protocol/messages';
+import type { Attempt, Status, Teaching } from './protocol/messages';
+import { Replays } from './replay/replays';
+import type { ReplayShow } from './replay/show.svelte';
+import type { Lesson } from './state/lesson.svelte';
 import type { Room } from './state/room.svelte';
 import { Search } from './state/search';
 import { Stage } from './stage/stage';
@@ -15,6 +18,7 @@ const DELAY_GAIN = 0.15;
 
 /** Joins the connection, the stage and the words. Holds the figure outside of the reactive state. */
 export class Viewer {
+  readonly replays: Replays;
   private readonly link: Link;
   private readonly stage: Stage;
   private readonly freshness = new Freshness();
@@ -33,23 +37,30 @@ export class Viewer {
 
   /**
    * @param canvas where to draw
-   * @param room the words' state
+   * @param room, lesson, show the words' state
    * @param root carries what can be observed from outside as `data-` attributes
    */
   constructor(
     canvas: HTMLCanvasElement,
     private readonly room: Room,
+    private readonly lesson: Lesson,
+    private readonly show: ReplayShow,
     private readonly root: HTMLElement,
   ) {
     this.stage = new Stage(
       canvas,
-      () => this.takeNewest(),
+      (elapsedS) => {
+        this.takeNewest();
+        this.replays.draw(elapsedS);
+      },
       () => this.acknowledge(),
     );
+    this.replays = new Replays(show, this.stage, () => this.showLive());
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
     this.link = new Link(`${scheme}://${location.host}/ws`, {
       motion: (buffer) => this.receive(buffer),
       status: (status) => this.learn(status),
+      attempt: (attempt) => this.note(attempt),
       changed: () => this.changed(),
     });
     this.link.start();
@@ -64,6 +75,25 @@ export class Viewer {
     this.stage.turn(azimuthDeg, elevationDeg, nearer);
   }
 
+  /** What pupils shall do from now on; null is whatever the box recognises. */
+  choose(activity: string | null): void {
+    this.lesson.ask(activity, performance.now());
+    this.link.choose(activity);
+  }
+
+  /** Shows an attempt again, because somebody wants to see it. */
+  see(attempt: Attempt): void {
+    this.lesson.show(attempt.id);
+    void this.replays.start(attempt);
+    this.replays.touch();
+  }
+
+  /** Back to the live figure and the newest words. */
+  backToLive(): void {
+    this.lesson.show(null);
+    this.replays.stop();
+  }
+
   dispose(): void {
     clearInterval(this.words);
     this.link.stop();
@@ -72,10 +102,36 @@ export class Viewer {
 
   private learn(status: Status): void {
     const nowMs = performance.now();
+    const moved = this.room.status?.evaluation.state === 'moving';
     this.room.status = status;
+    this.lesson.confirm(status.evaluation.activity, nowMs);
+    if (!moved && status.evaluation.state === 'moving' && !this.replays.held(nowMs)) this.backToLive();
     this.lateness.noteStatus(status, nowMs);
     this.search.note(status, nowMs);
     this.say();
+  }
+
+  /** An attempt ended, or the box tells of those that did before. */
+  private note(attempt: Attempt): void {
+    const nowMs = performance.now();
+    const boxMs = this.link.clock.boxMs(nowMs) ?? (this.room.status ? this.room.status.box_time_us / 1000 : null);
+    if (!this.lesson.note(attempt, boxMs) || this.replays.held(nowMs)) return;
+    this.lesson.show(attempt.id);
+    void this.replays.start(attempt);
+  }
+
+  private async learnWords(): Promise<void> {
+    try {
+      const response = await fetch('/api/teaching');
+      if (response.ok) this.lesson.teaching = (await response.json()) as Teaching;
+    } catch {
+      // Asked again with the next connection.
+    }
+  }
+
+  private showLive(): void {
+    this.stage.show(this.room.phase === 'live' ? this.pose : unsure(this.pose));
+    if (this.hasFigure) this.stage.frameOnce();
   }
 
   private turnComes(): void {
@@ -121,8 +177,10 @@ export class Viewer {
     this.pose = complete(frame, this.pose);
     this.hasFigure = true;
     this.figures += 1;
-    this.stage.show(this.pose);
-    this.stage.frameOnce();
+    if (!this.replays.onStage) {
+      this.stage.show(this.pose);
+      this.stage.frameOnce();
+    }
     const boxMs = this.link.clock.boxMs(nowMs);
     if (boxMs !== null) this.noteDelay(figureAgeMs(frame, boxMs));
   }
@@ -141,7 +199,13 @@ export class Viewer {
     this.underWay = 0;
     this.waiting = null;
     this.droppedMs = -Infinity;
-    if (!this.link.connected) this.room.status = null; // what was known of the cameras is no longer
+    if (this.link.connected) {
+      this.lesson.forget(); // the box tells anew
+      void this.learnWords();
+    } else {
+      this.room.status = null; // what was known of the cameras is no longer
+      this.backToLive();
+    }
     this.freshness.reset();
     this.lateness.reset();
     this.search.reset();
@@ -162,7 +226,7 @@ export class Viewer {
       dropping: nowMs - this.droppedMs < STALE_AFTER_MS,
       nobody: this.search.inVain(nowMs),
     });
-    if (phase !== 'live' && this.stage.colouredShare > 0) this.stage.show(unsure(this.pose));
+    if (phase !== 'live' && !this.replays.onStage && this.stage.colouredShare > 0) this.stage.show(unsure(this.pose));
     this.room.phase = phase;
     this.room.lateCause = this.lateness.cause(nowMs);
     this.room.figureAgeS = this.hasFigure ? Math.floor(this.freshness.ageMs(nowMs) / 1000) : null;
@@ -186,6 +250,12 @@ export class Viewer {
     data['figures'] = String(this.figures);
     data['drawn'] = String(this.stage.drawn);
     data['coloured'] = this.stage.colouredShare.toFixed(2);
+    data['stage'] = this.replays.onStage ? 'replay' : 'live';
+    data['attempt'] = this.show.id === null ? '' : String(this.show.id);
+    data['position'] = this.replays.positionS.toFixed(2);
+    data['levels'] = [0, 1, 2, 3]
+      .map((level) => this.replays.levels?.filter((own) => own === level).length ?? 0)
+      .join();
     data['azimuth'] = this.stage.azimuthDeg.toFixed(1);
   }
 }

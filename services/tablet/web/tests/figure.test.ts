@@ -1,9 +1,11 @@
-import { Color } from 'three';
+import { Color, Mesh } from 'three';
 import { describe, expect, it } from 'vitest';
 import { complete, showsSomebody, standing, unsure } from '../src/figure/pose';
 import { Figure } from '../src/figure/figure';
 import { BODY, DRAWN, LEFT, RIGHT, SKIN, VISOR } from '../src/figure/materials';
-import { Joint, STANDING_M } from '../src/figure/skeleton';
+import { Part } from '../src/figure/part';
+import { FACE, Joint, STANDING_M } from '../src/figure/skeleton';
+import { Level } from '../src/protocol/attemptReplay';
 import { JointState, type MotionFrame } from '../src/protocol/motionFrame';
 import { facingRad } from '../src/stage/framing';
 
@@ -101,5 +103,45 @@ describe('the colours', () => {
     expect(saturation(palette.seen.color)).toBeGreaterThan(0.5);
     expect(saturation(palette.guessed.color)).toBeLessThan(0.1);
     expect(saturation(palette.unknown.color)).toBeLessThan(0.1);
+  });
+});
+
+describe('the judged figure', () => {
+  const levelsOf = (level: number): Uint8Array => new Uint8Array(17).fill(level);
+
+  it('is without colour where nobody knows', () => {
+    const figure = new Figure();
+    figure.showJudged(complete(seen(), standing()), levelsOf(Level.Grey));
+    expect(figure.colouredShare).toBe(0);
+  });
+
+  it('colours what was judged, and neither hands nor feet', () => {
+    const figure = new Figure();
+    figure.showJudged(complete(seen(), standing()), levelsOf(Level.Green));
+    expect(figure.colouredShare).toBeGreaterThan(0.8);
+    expect(figure.colouredShare).toBeLessThan(1);
+  });
+
+  it('shows each end of a limb as good as the joint there', () => {
+    const levels = levelsOf(Level.Green);
+    levels[Joint.LeftKnee] = Level.Red;
+    const thigh = new Part(new Mesh(), LEFT, [Joint.LeftHip, Joint.LeftKnee]);
+    expect(thigh.levels(levels).slice(0, 2)).toEqual([Level.Green, Level.Red]);
+  });
+
+  it('takes a head for as good as the worst of its points, of which two must be known', () => {
+    const head = new Part(new Mesh(), SKIN, FACE, 'face');
+    const levels = levelsOf(Level.Grey);
+    levels[Joint.Nose] = Level.Green;
+    expect(head.levels(levels)[0]).toBe(Level.Grey);
+    levels[Joint.LeftEar] = Level.Yellow;
+    expect(head.levels(levels)[0]).toBe(Level.Yellow);
+  });
+
+  it('is blue again when it is live again', () => {
+    const figure = new Figure();
+    figure.showJudged(complete(seen(), standing()), levelsOf(Level.Red));
+    figure.show(unsure(complete(seen(), standing())));
+    expect(figure.colouredShare).toBe(0);
   });
 });

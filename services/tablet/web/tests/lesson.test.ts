@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { text } from '../src/text/en';
+import { en } from '../src/text/en';
 
 describe('the clock of a lesson', () => {
   it.each([
@@ -9,22 +9,22 @@ describe('the clock of a lesson', () => {
     [3600, '1:00:00'],
     [3725.4, '1:02:05'],
   ])('%d s reads %s', (s, words) => {
-    expect(text.lesson.clock(s)).toBe(words);
+    expect(en.formats.clock(s)).toBe(words);
   });
 
   it('does not claim a time that is not known', () => {
-    expect(text.lesson.clock(null)).toBe('–');
+    expect(en.formats.clock(null)).toBe('–');
   });
 });
 
 it('a replay is named with its title and day, or with its day alone', () => {
   const noon = Date.UTC(2026, 10, 22, 12);
-  expect(text.lesson.replay('7b, throwing', noon)).toBe('Replay · 7b, throwing · 22 November 2026');
-  expect(text.lesson.replay('', noon)).toBe('Replay · 22 November 2026');
+  expect(en.lesson.replay('7b, throwing', noon)).toBe('Replay · 7b, throwing · 22 November 2026');
+  expect(en.lesson.replay('', noon)).toBe('Replay · 22 November 2026');
 });
 
 it('what went wrong in a lesson that is played is not told as if it did so now', () => {
-  const { busy, lost, slow } = text.cameras.then;
+  const { busy, lost, slow } = en.cameras.then;
   for (const words of [busy, lost([2]), lost([1, 2]), slow([2], false), slow([1, 2], false), slow([1, 2], true)]) {
     expect(words).toMatch(/ (was|were) /);
     expect(words).not.toMatch(/ (is|are) /);
@@ -32,7 +32,7 @@ it('what went wrong in a lesson that is played is not told as if it did so now',
 });
 
 it('a figure that has just stopped is not said to be missing for 0 seconds', () => {
-  expect([null, 0, 1, 2].map(text.staleFor)).toEqual([
+  expect([null, 0, 1, 2].map(en.staleFor)).toEqual([
     'No new movement',
     'No new movement',
     'No new movement for 1 second',

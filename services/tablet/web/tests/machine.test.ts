@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { troubleForTeacher } from '../src/state/machine';
-import { text } from '../src/text/en';
+import { en } from '../src/text/en';
 
 describe('troubles of the machine', () => {
   it('reach the teacher when the lesson suffers, the worst first', () => {
@@ -16,8 +16,8 @@ describe('troubles of the machine', () => {
 
 describe('sizes', () => {
   it('are in the unit that people use', () => {
-    expect(text.details.size(null)).toBe('–');
-    expect(text.details.size(812)).toBe('812 MB');
-    expect(text.details.size(1536)).toBe('1.5 GB');
+    expect(en.formats.size(null)).toBe('–');
+    expect(en.formats.size(812)).toBe('812 MB');
+    expect(en.formats.size(1536)).toBe('1.5 GB');
   });
 });

@@ -1,4 +1,4 @@
-import { readServerMessage, type Ack, type Ping, type Status } from '../protocol/messages';
+import { readServerMessage, type Ack, type Attempt, type Choose, type Ping, type Status } from '../protocol/messages';
 import { BoxClock } from './boxClock';
 import { reconnectDelayMs } from './reconnect';
 
@@ -11,6 +11,7 @@ export interface LinkEvents {
   /** A binary motion frame came. It counts as under way until `acknowledgeMotions`. */
   motion(buffer: ArrayBuffer): void;
   status(status: Status): void;
+  attempt(attempt: Attempt): void;
   /** Connected, disconnected, or another attempt failed. */
   changed(): void;
 }
@@ -54,6 +55,11 @@ export class Link {
     if (count === 0) return;
     this.motions += count;
     this.acknowledge();
+  }
+
+  /** What pupils shall do from now on; null is whatever the box recognises. */
+  choose(activity: string | null): void {
+    this.send({ type: 'choose', activity });
   }
 
   private open(): void {
@@ -105,6 +111,8 @@ export class Link {
       this.statuses += 1;
       this.acknowledge();
       this.events.status(message);
+    } else if (message?.type === 'attempt') {
+      this.events.attempt(message);
     } else if (message?.type === 'pong') {
       this.receivePong(message.id, message.box_time_us / 1000);
     }
@@ -139,7 +147,7 @@ export class Link {
     this.send({ type: 'ack', motions: this.motions, statuses: this.statuses });
   }
 
-  private send(message: Ack | Ping): void {
+  private send(message: Ack | Choose | Ping): void {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 }

@@ -1,9 +1,12 @@
-import { Group, SphereGeometry, Vector3, type Mesh } from 'three';
+import { Group, Mesh, SphereGeometry, Vector3 } from 'three';
+import { Level } from '../protocol/attemptReplay';
 import { JointState } from '../protocol/motionFrame';
 import { Foot, Hand } from './extremities';
 import { Head } from './head';
+import { judged } from './judged';
 import { FOREARM, Limb, SHANK, THIGH, UPPER_ARM, mesh } from './limb';
-import { BODY, DRAWN, LEFT, RIGHT, SKIN, VISOR, type Palette } from './materials';
+import { BODY, DRAWN, GHOST, GHOST_INSIDE, LEFT, RIGHT, SKIN, VISOR, type Palette } from './materials';
+import { Part, lookOf } from './part';
 import type { Pose } from './pose';
 import { FACE, Joint, TRUNK } from './skeleton';
 import { Trunk } from './trunk';
@@ -13,8 +16,6 @@ const REFERENCE_M = 0.48 + 0.42 + 0.41;
 const SCALE_LIMITS = [0.5, 1.35] as const;
 /** Share of a new measurement in the person's size: limbs must not swell when a joint is off for a moment. */
 const SCALE_GAIN = 0.05;
-/** So many points of the face make a head seen. */
-const FACE_QUORUM = 2;
 
 /** The pupil in 3D, made of the 17 joints. World frame: metres, z up. */
 export class Figure {
@@ -44,13 +45,37 @@ export class Figure {
   private readonly feet = [new Foot(Joint.LeftKnee, Joint.LeftAnkle), new Foot(Joint.RightKnee, Joint.RightAnkle)];
   private readonly joints = Array.from({ length: 17 }, () => new Vector3());
   private scale: number | null = null;
-  private parts = 0;
-  private coloured = 0;
+  private readonly parts: Part[];
+  private readonly insides = new Group();
 
   constructor() {
     this.group.add(this.trunk.mesh, this.head.skull, this.head.visor, this.head.neck);
     for (const limb of this.limbs) this.group.add(limb.shaft, limb.knob);
     for (const part of [...this.sockets, ...this.hands, ...this.feet]) this.group.add(part.mesh);
+    this.parts = this.listParts();
+  }
+
+  /** A figure to be shown by `showGhost`, which needs more of each part. */
+  static seenThrough(): Figure {
+    const figure = new Figure();
+    for (const { mesh: part } of figure.parts) {
+      const inside = new Mesh(part.geometry, GHOST_INSIDE);
+      inside.matrixAutoUpdate = false;
+      inside.matrix = part.matrix;
+      inside.frustumCulled = false;
+      inside.renderOrder = -3;
+      part.renderOrder = -2;
+      part.castShadow = false;
+      figure.insides.add(inside);
+    }
+    figure.group.add(figure.insides);
+    // Whoever is drawn next is before it.
+    const last = figure.parts.at(-1)!.mesh;
+    last.renderOrder = -1;
+    last.onAfterRender = (renderer) => {
+      if (figure.insides.visible) renderer.clearDepth();
+    };
+    return figure;
   }
 
   /** Another person: the size is measured anew. */
@@ -58,8 +83,33 @@ export class Figure {
     this.scale = null;
   }
 
-  /** Puts the figure into a pose. */
+  /** Puts the figure into a pose; colour is for what was seen. */
   show(pose: Pose): void {
+    this.place(pose);
+    this.insides.visible = false;
+    for (const part of this.parts) part.mesh.material = part.palette[lookOf(part.state(pose.states))];
+    this.count((part) => part.state(pose.states) === JointState.Seen);
+  }
+
+  /** Puts the figure into a pose whose joints have 17 levels, from grey to red. */
+  showJudged(pose: Pose, levels: Uint8Array): void {
+    this.place(pose);
+    for (const part of this.parts) {
+      part.judged ??= judged();
+      part.judged.levels.fromArray(part.levels(levels));
+      part.mesh.material = part.judged.material;
+    }
+    this.count((part) => part.levels(levels).some((level) => level !== Level.Grey));
+  }
+
+  /** Puts the figure into a pose, seen through. */
+  showGhost(pose: Pose): void {
+    this.place(pose);
+    this.insides.visible = true;
+    for (const part of this.parts) part.mesh.material = GHOST;
+  }
+
+  private place(pose: Pose): void {
     this.joints.forEach((joint, index) => joint.fromArray(pose.positionsM, 3 * index));
     const scale = this.measure();
     const bodyForward = this.placeTrunk(pose, scale);
@@ -67,7 +117,6 @@ export class Figure {
     for (const socket of this.sockets) socket.place(this.joints[socket.joint]!, scale);
     for (const hand of this.hands) hand.place(this.joints[hand.elbow]!, this.joints[hand.wrist]!, scale);
     for (const foot of this.feet) foot.place(this.joints[foot.knee]!, this.joints[foot.ankle]!, bodyForward, scale);
-    this.colour(pose.states);
   }
 
   /** Places trunk and head; returns the direction that the body looks in. */
@@ -96,27 +145,25 @@ export class Figure {
     return this.scale;
   }
 
-  private colour(states: Uint8Array): void {
-    this.parts = 0;
-    this.coloured = 0;
-    const worst = (...joints: number[]): number => Math.min(...joints.map((joint) => states[joint]!));
-    this.paint(worst(...TRUNK), [this.trunk.mesh, BODY]);
-    const face = FACE.map((joint) => states[joint]!).sort((a, b) => b - a)[FACE_QUORUM - 1]!;
-    this.paint(face, [this.head.skull, SKIN], [this.head.visor, VISOR], [this.head.neck, SKIN]);
-    for (const limb of this.limbs) {
-      this.paint(worst(limb.from, limb.to), [limb.shaft, limb.palette], [limb.knob, limb.palette]);
-    }
-    for (const socket of this.sockets) this.paint(states[socket.joint]!, [socket.mesh, socket.palette]);
-    for (const hand of this.hands) this.paint(worst(hand.elbow, hand.wrist), [hand.mesh, DRAWN]);
-    for (const foot of this.feet) this.paint(worst(foot.knee, foot.ankle), [foot.mesh, DRAWN]);
-    this.colouredShare = this.coloured / this.parts;
+  private count(coloured: (part: Part) => boolean): void {
+    this.colouredShare = this.parts.filter(coloured).length / this.parts.length;
   }
 
-  private paint(state: number, ...meshes: [Mesh, Palette][]): void {
-    this.parts += 1;
-    if (state === JointState.Seen) this.coloured += 1;
-    const look = state === JointState.Seen ? 'seen' : state === JointState.Guessed ? 'guessed' : 'unknown';
-    for (const [part, palette] of meshes) part.material = palette[look];
+  private listParts(): Part[] {
+    const { skull, visor, neck } = this.head;
+    return [
+      new Part(this.trunk.mesh, BODY, TRUNK),
+      new Part(skull, SKIN, FACE, 'face'),
+      new Part(visor, VISOR, FACE, 'face'),
+      new Part(neck, SKIN, FACE, 'face'),
+      ...this.limbs.flatMap(({ shaft, knob, from, to, palette }) => [
+        new Part(shaft, palette, [from, to]),
+        new Part(knob, palette, [to]),
+      ]),
+      ...this.sockets.map(({ mesh, palette, joint }) => new Part(mesh, palette, [joint])),
+      ...this.hands.map(({ mesh, elbow, wrist }) => new Part(mesh, DRAWN, [elbow, wrist], 'drawn')),
+      ...this.feet.map(({ mesh, knee, ankle }) => new Part(mesh, DRAWN, [knee, ankle], 'drawn')),
+    ];
   }
 }
 

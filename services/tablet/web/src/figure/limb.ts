@@ -1,4 +1,5 @@
 import { LatheGeometry, Matrix4, Mesh, SphereGeometry, Vector2, Vector3, type BufferGeometry } from 'three';
+import { SHARES, share } from './judged';
 import type { Palette } from './materials';
 
 /** Radii of a body of 1.70 m along a segment, from its near end (0) to its far end (1), in metres. */
@@ -73,8 +74,9 @@ export function alongY(a: Vector3, b: Vector3): Matrix4 {
   return MATRIX.makeBasis(X, Y, Z).setPosition(a);
 }
 
-/** A mesh whose matrix is set by hand, that throws and receives shadow. */
+/** A mesh whose matrix is set by hand, that throws and receives shadow. It belongs to one joint unless its geometry says otherwise. */
 export function mesh(geometry: BufferGeometry, palette: Palette): Mesh {
+  if (!geometry.hasAttribute(SHARES)) share(geometry, () => [1, 0, 0, 0]);
   const made = new Mesh(geometry, palette.unknown);
   made.matrixAutoUpdate = false;
   made.castShadow = true;
@@ -90,7 +92,10 @@ function turned(profile: Profile): BufferGeometry {
     const along = step / ALONG;
     points.push(new Vector2(interpolate(profile, along), along));
   }
-  return new LatheGeometry(points, AROUND);
+  const geometry = new LatheGeometry(points, AROUND);
+  const position = geometry.getAttribute('position');
+  share(geometry, (vertex) => [1 - position.getY(vertex), position.getY(vertex), 0, 0]);
+  return geometry;
 }
 
 /** Smooth interpolation of a profile (monotone between its points). */

@@ -1,4 +1,4 @@
-import { MeshLambertMaterial } from 'three';
+import { CustomBlending, MeshLambertMaterial, OneFactor, OneMinusSrcAlphaFactor, SrcAlphaFactor } from 'three';
 
 /** How a part of the figure looks for how far it is believed. Colour is for what was seen; everything else is grey. */
 export interface Palette {
@@ -22,3 +22,18 @@ export const SKIN = palette(0x5490da);
 export const VISOR = palette(0x1c3763);
 /** Hands and feet are drawn along, not measured. Dark, but no grey: a forearm that was seen must not end in a hand that looks unsure. */
 export const DRAWN = palette(0x1b4390);
+
+/**
+ * The standard where it stands in the pupil's place: seen through, and always behind him, as nothing may change the colours on the
+ * pupil. It is drawn before him, so it mixes with the background on its own; what is drawn first keeps its inside from being seen.
+ */
+export const GHOST = new MeshLambertMaterial({
+  color: 0x3d63c9,
+  opacity: 0.4,
+  blending: CustomBlending,
+  blendSrc: SrcAlphaFactor,
+  blendDst: OneMinusSrcAlphaFactor,
+  blendSrcAlpha: OneFactor,
+  blendDstAlpha: OneMinusSrcAlphaFactor,
+});
+export const GHOST_INSIDE = new MeshLambertMaterial({ colorWrite: false });

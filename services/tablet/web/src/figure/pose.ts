@@ -26,7 +26,7 @@ export function showsSomebody(frame: MotionFrame): boolean {
  * Gives unknown joints a place, so that the figure stays whole: the one they had before relative to the joint that they hang on. They stay
  * unknown, and are drawn as such.
  */
-export function complete(frame: MotionFrame, before: Pose): Pose {
+export function complete(frame: Pose, before: Pose): Pose {
   const positionsM = frame.positionsM.slice();
   const shift = trunkShift(frame, before);
   for (const joint of TRUNK) {
@@ -43,7 +43,7 @@ export function complete(frame: MotionFrame, before: Pose): Pose {
 type Triple = [number, number, number];
 
 /** How far the known joints of the trunk moved on average since the pose before. */
-function trunkShift(frame: MotionFrame, before: Pose): Triple {
+function trunkShift(frame: Pose, before: Pose): Triple {
   const known = TRUNK.filter((joint) => frame.states[joint] !== JointState.Unknown);
   const sum: Triple = [0, 0, 0];
   for (const joint of known) {

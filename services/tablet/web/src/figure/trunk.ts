@@ -1,4 +1,5 @@
 import { BufferAttribute, BufferGeometry, Vector3, type Mesh } from 'three';
+import { share } from './judged';
 import { mesh } from './limb';
 import { BODY } from './materials';
 
@@ -42,10 +43,13 @@ export class Trunk {
   constructor() {
     this.geometry.setAttribute('position', new BufferAttribute(this.positions, 3));
     this.geometry.setIndex(faces());
+    share(this.geometry, sharesAt);
     this.mesh = mesh(this.geometry, BODY);
   }
 
   place(frame: TrunkFrame, scale: number): void {
+    // Its own origin is between the hips, as a pattern on it moves along with that.
+    this.mesh.matrix.setPosition(frame.hips);
     const centre = new Vector3();
     for (let ring = 0; ring <= RINGS; ring++) {
       const section = sectionAt(ring / RINGS);
@@ -67,7 +71,7 @@ export class Trunk {
       section.hips * frame.hipHalf.length() + section.shoulders * frame.shoulderHalf.length() + section.widthM * scale;
     const halfDepth = section.depthM * scale;
     centre
-      .copy(frame.hips)
+      .set(0, 0, 0)
       .addScaledVector(up, section.along)
       .addScaledVector(forward, section.forwardM * scale);
     const point = new Vector3();
@@ -87,6 +91,14 @@ export class Trunk {
     this.positions[3 * vertex + 1] = point.y;
     this.positions[3 * vertex + 2] = point.z;
   }
+}
+
+/** How much a point belongs to the left shoulder, the right shoulder, the left hip and the right hip. */
+function sharesAt(vertex: number): [number, number, number, number] {
+  const ring = Math.min(Math.floor(vertex / AROUND), RINGS);
+  const upper = Math.min(Math.max(sectionAt(ring / RINGS).along, 0), 1);
+  const left = vertex < AROUND * (RINGS + 1) ? 0.5 + 0.5 * Math.cos((2 * Math.PI * (vertex % AROUND)) / AROUND) : 0.5;
+  return [upper * left, upper * (1 - left), (1 - upper) * left, (1 - upper) * (1 - left)];
 }
 
 type Section = { [Key in keyof (typeof SECTIONS)[number]]: number };

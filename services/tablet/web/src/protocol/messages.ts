@@ -8,12 +8,21 @@ export type ProcessStatus = components['schemas']['ProcessStatus'];
 export type MachineStatus = components['schemas']['MachineStatus'];
 export type MachineCode = MachineStatus['troubles'][number];
 export type CalibrationCode = NonNullable<Status['calibration']>;
+export type EvaluationStatus = Status['evaluation'];
+export type Attempt = components['schemas']['Attempt'];
+export type AttemptMeasure = components['schemas']['AttemptMeasure'];
+export type Verdict = AttemptMeasure['verdict'];
+export type Teaching = components['schemas']['Teaching'];
 export type Pong = components['schemas']['Pong'];
 export type Ping = components['schemas']['Ping'];
 export type Ack = components['schemas']['Ack'];
+export type Choose = components['schemas']['Choose'];
+
+export type ServerMessage = Status | Attempt | Pong;
+const KINDS: ReadonlySet<unknown> = new Set<ServerMessage['type']>(['status', 'attempt', 'pong']);
 
 /** A message of the server, or null for a kind that this page does not know (a newer box). */
-export function readServerMessage(text: string): Status | Pong | null {
+export function readServerMessage(text: string): ServerMessage | null {
   const message = JSON.parse(text) as { type?: unknown };
-  return message.type === 'status' || message.type === 'pong' ? (message as Status | Pong) : null;
+  return KINDS.has(message.type) ? (message as ServerMessage) : null;
 }

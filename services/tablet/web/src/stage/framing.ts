@@ -2,12 +2,19 @@ import { Vector3, type PerspectiveCamera } from 'three';
 import type { Pose } from '../figure/pose';
 import { Joint } from '../figure/skeleton';
 
-/** Height of what the first view holds: a pupil with raised arms. */
+/** Height of what the first view holds: a pupil with raised arms. Above an attempt there is so much air. */
 const VIEW_HEIGHT_M = 2.4;
+const AIR_M = 0.5;
 const VIEW_WIDTH_M = 1.9;
+/** Of two who stand beside one another. */
+const PAIR_WIDTH_M = 3.3;
+/** From the pupil to the standard beside him. */
+export const BESIDE_M = 1.2;
 const MIDDLE_M = 0.84;
 /** The first view comes from the front, a little from the pupil's left and from above. */
 const AZIMUTH_OFFSET_RAD = 0.62;
+/** An attempt is seen more from the side, the one that leads: there knees, hips and trunk show what they do. */
+const ATTEMPT_OFFSET_RAD = 0.95;
 const ELEVATION_RAD = 0.2;
 const LIGHT_AZIMUTH_RAD = 0.7;
 const LIGHT_ELEVATION_RAD = 0.95;
@@ -42,13 +49,39 @@ export function facingRad(pose: Pose): number {
 
 /** How far away a camera shows a whole pupil, whatever the shape of the screen. */
 export function firstDistanceM(camera: PerspectiveCamera): number {
+  return distanceM(camera, VIEW_HEIGHT_M, VIEW_WIDTH_M);
+}
+
+function distanceM(camera: PerspectiveCamera, heightM: number, widthM: number): number {
   const halfHeight = Math.tan((camera.fov * Math.PI) / 360);
-  return Math.max(VIEW_HEIGHT_M / 2 / halfHeight, VIEW_WIDTH_M / 2 / (halfHeight * camera.aspect));
+  return Math.max(heightM / 2 / halfHeight, widthM / 2 / (halfHeight * camera.aspect));
 }
 
 /** The position of a camera that shows the whole pupil at `target`. */
 export function firstView(pose: Pose, target: Vector3, camera: PerspectiveCamera): Vector3 {
   return around(facingRad(pose) + AZIMUTH_OFFSET_RAD, ELEVATION_RAD, firstDistanceM(camera)).add(target);
+}
+
+/** An attempt as the view has to hold it. */
+export interface Framed {
+  /** The direction that the pupil looks in at its beginning. */
+  facing: number;
+  handed: 'right' | 'left';
+  /** How high it goes. */
+  heightM: number;
+}
+
+/** How far away a camera shows an attempt, and the standard beside it where there is a pair. */
+export function attemptDistanceM(camera: PerspectiveCamera, { heightM }: Framed, pair: boolean): number {
+  return distanceM(camera, heightM + AIR_M, pair ? PAIR_WIDTH_M : VIEW_WIDTH_M);
+}
+
+/** The position of a camera that shows an attempt from the side that leads; `target` is raised to the middle of it. */
+export function attemptView(framed: Framed, target: Vector3, camera: PerspectiveCamera, pair: boolean): Vector3 {
+  const side = framed.handed === 'right' ? -1 : 1;
+  target.setZ((framed.heightM + 0.3 * AIR_M) / 2);
+  const away = attemptDistanceM(camera, framed, pair);
+  return around(framed.facing + side * ATTEMPT_OFFSET_RAD, ELEVATION_RAD, away).add(target);
 }
 
 /** Where the light comes from, seen from the pupil: over the right shoulder of the one who looks from the first view. */

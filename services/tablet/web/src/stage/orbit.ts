@@ -8,6 +8,14 @@ const HIGHEST_RAD = 0.12;
 const LOWEST_RAD = Math.PI / 2 - 0.02;
 const RETURN_MS = 450;
 
+/** A place to look from and a point to look at. */
+export interface View {
+  target: Vector3;
+  position: Vector3;
+  /** Somebody chose it. */
+  touched: boolean;
+}
+
 interface Journey {
   fromTarget: Vector3;
   fromPosition: Vector3;
@@ -53,6 +61,16 @@ export class Orbit {
 
   get azimuthDeg(): number {
     return MathUtils.radToDeg(this.controls.getAzimuthalAngle());
+  }
+
+  get view(): View {
+    return { target: this.controls.target.clone(), position: this.camera.position.clone(), touched: this.touched };
+  }
+
+  /** Looks again as before, from the same side, wherever the pupil is by now. */
+  restore(view: View, target: Vector3): void {
+    this.moveTo(target, view.position.clone().sub(view.target).add(target), false);
+    this.touched = view.touched;
   }
 
   /** Moves the view along with the pupil. */

@@ -2,7 +2,9 @@
 
 import type { LateCause } from '../connection/lateness';
 import type { Phase } from '../connection/phase';
-import type { CalibrationCode, CameraStatus, MachineCode, ProcessStatus } from '../protocol/messages';
+import type { CalibrationCode, CameraStatus, MachineCode, ProcessStatus, Verdict } from '../protocol/messages';
+import type { StandardShown } from '../replay/scene';
+import { formats } from './format';
 
 const COUNTS = ['no camera', 'one', 'two', 'three', 'four', 'five', 'six', 'seven', 'eight'];
 
@@ -96,17 +98,14 @@ const calibration: Record<CalibrationCode, string> = {
   camera_moved: 'A camera was moved or exchanged – the figure may be wrong',
 };
 
-/** The networks' names mean nothing to a teacher; the technician reads them in the details. */
-const ways: Record<string, string> = { thunder: 'exact', lightning: 'fast' };
-
-const days = new Intl.DateTimeFormat('en-GB', { dateStyle: 'long' });
-const day = (ms: number): string => days.format(ms);
+const f = formats('en-GB');
 const seconds = (s: number): string => (s === 1 ? '1 second' : `${s} seconds`);
-const number = (value: number | null, digits = 0): string => (value === null ? '–' : value.toFixed(digits));
 
-export const text = {
+export const en = {
+  formats: f,
   product: 'KineBox',
-  side: 'State of the room',
+  language: 'Language',
+  side: 'Feedback and state of the room',
   phases,
   gettingReady: { title: 'Cameras are getting ready', words: 'One moment.' },
   late,
@@ -114,25 +113,71 @@ export const text = {
 
   lesson: {
     recording: 'Recording',
-    /** Minutes and seconds, with hours where there are any. */
-    clock: (s: number | null): string => {
-      if (s === null) return '–';
-      const whole = Math.floor(s);
-      const minutes = Math.floor(whole / 60) % 60;
-      const hours = Math.floor(whole / 3600);
-      const parts = hours > 0 ? [hours, String(minutes).padStart(2, '0')] : [minutes];
-      return [...parts, String(whole % 60).padStart(2, '0')].join(':');
-    },
-    replay: (title: string, beganMs: number): string => ['Replay', title, day(beganMs)].filter(Boolean).join(' · '),
-    speed: (factor: number): string => `${factor}×`,
+    replay: (title: string, beganMs: number): string => ['Replay', title, f.day(beganMs)].filter(Boolean).join(' · '),
   },
 
   view: {
     label: 'The pupil in 3D',
-    help: 'Turn the view with the arrow keys, come nearer with plus and minus, and go back to the first view with the key R.',
+    help: 'Turn the view with the arrow keys, come nearer with plus and minus, and go back to the first view with the key R. The space bar stops and starts a replay, Escape ends it.',
     reset: 'Reset view',
     measured: 'Seen',
     unsure: 'Not sure',
+  },
+
+  activity: {
+    title: 'Activity',
+    choose: 'Choose the activity',
+    close: 'Close',
+    any: 'Any activity',
+    anyHint: 'The box finds out which',
+    unknown: 'Not known',
+  },
+
+  feedback: {
+    title: 'Last attempt',
+    earlier: (number: number): string => `Attempt ${number}`,
+    none: { title: 'No attempt yet', words: 'What to change stands here a second after each attempt.' },
+    off: { title: 'Attempts are not judged', words: 'The part of the box that judges them is not at work.' },
+    past: 'From before the connection was lost',
+    /** Nothing is corrected: there was no fault, or none that is sure enough. */
+    fine: 'No correction this time',
+    unseen: 'Not seen well enough to judge',
+    score: 'Score',
+    scoreOf: (value: string, sigma: string): string => `${value} of 100, give or take ${sigma}`,
+    scoreUnknown: 'Score not known',
+    next: 'Next time',
+    verdicts: { good: 'Good', fair: 'Nearly', poor: 'Work on it', unknown: 'Not known' } satisfies Record<
+      Verdict,
+      string
+    >,
+    measure: (value: string, sigma: string, unit: string): string => `${value}${unit}, give or take ${sigma}`,
+  },
+
+  attempts: {
+    title: 'Attempts',
+    none: 'The attempts of this lesson will be listed here.',
+    show: (number: number, action: string, score: string | null): string =>
+      `See attempt ${number} again: ${action}, ${score === null ? 'score not known' : `score ${score}`}`,
+  },
+
+  replay: {
+    title: 'Slow replay',
+    loading: 'The replay is on its way',
+    missing: 'The replay of this attempt is no longer there',
+    back: 'Back to live',
+    play: 'Play',
+    pause: 'Pause',
+    position: 'Moment of the attempt',
+    seconds: (at: number, length: number): string => `${f.number(at, 1)} of ${f.number(length, 1)} seconds`,
+    speedLabel: 'Speed',
+    keyframes: ['Start', 'Effort', 'Peak', 'End'],
+    keyframeLabel: 'Go to',
+    standard: { ghost: 'Model on top', beside: 'Model beside', off: 'No model' } satisfies Record<
+      StandardShown,
+      string
+    >,
+    mirror: 'Mirror',
+    legend: { green: 'As it should be', yellow: 'A little off', red: 'Off', grey: 'Not sure', standard: 'Model' },
   },
 
   cameras: {
@@ -144,7 +189,6 @@ export const text = {
       string
     >,
     reasons,
-    way: (network: string | null): string => ways[network ?? ''] ?? '',
     none: 'Not known without a connection',
     /** One line for the teacher: who is missing, and whether the lesson can go on. */
     lost: (lost: number[], left: number): string => {
@@ -180,8 +224,6 @@ export const text = {
     title: 'Measurements',
     rate: 'Figures a second',
     delay: 'Delay',
-    milliseconds: (ms: number | null): string => (ms === null ? '–' : `${Math.round(ms / 10) * 10} ms`),
-    count: (hz: number | null): string => number(hz),
   },
 
   details: {
@@ -233,19 +275,10 @@ export const text = {
     disk: 'Disk free',
     clock: 'Date and time of the box',
     version: 'Version',
-    degrees: (celsius: number | null): string => (celsius === null ? '–' : `${celsius.toFixed(0)} °C`),
-    size: (mb: number | null): string => {
-      if (mb === null) return '–';
-      return mb < 1024 ? `${mb.toFixed(0)} MB` : `${(mb / 1024).toFixed(1)} GB`;
-    },
-    moment: (ms: number | null): string =>
-      ms === null ? '–' : new Date(ms).toLocaleString('en-GB', { dateStyle: 'medium', timeStyle: 'medium' }),
     epoch: 'Footage repeated',
     clients: 'Tablets',
     rejected: 'Rejected from bus / tablets',
-    ms: (value: number | null): string => (value === null ? '–' : `${value.toFixed(0)} ms`),
-    pair: (a: number | null, b: number | null, digits = 0): string => `${number(a, digits)} / ${number(b, digits)}`,
-    percent: (share: number | null): string => (share === null ? '–' : `${(100 * share).toFixed(0)} %`),
-    number,
   },
 };
+
+export type Words = typeof en;

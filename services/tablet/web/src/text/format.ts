@@ -1,0 +1,73 @@
+/** Numbers and times as people of a language write them. */
+
+export interface Formats {
+  number: (value: number | null, digits?: number) => string;
+  clock: (s: number | null) => string;
+  day: (ms: number) => string;
+  moment: (ms: number | null) => string;
+  milliseconds: (ms: number | null) => string;
+  ms: (value: number | null) => string;
+  pair: (a: number | null, b: number | null, digits?: number) => string;
+  percent: (share: number | null) => string;
+  degrees: (celsius: number | null) => string;
+  size: (mb: number | null) => string;
+  /** How fast something is played. */
+  pace: (factor: number) => string;
+  estimate: (value: number, sigma: number, unit: string) => Estimate;
+}
+
+/** A measured value in words: the number, how far it may be off, and its unit. */
+export interface Estimate {
+  value: string;
+  sigma: string;
+  unit: string;
+}
+
+const NONE = '–';
+/** Of measures, as they stand behind a number. */
+const UNITS: Record<string, string> = { deg: '°', cm: ' cm', pct: ' %', m_s: ' m/s', s: ' s', deg_s: ' °/s' };
+
+/** @param locale as browsers know it */
+export function formats(locale: string): Formats {
+  const days = new Intl.DateTimeFormat(locale, { dateStyle: 'long' });
+  const moments = new Intl.DateTimeFormat(locale, { dateStyle: 'medium', timeStyle: 'medium' });
+  const known = (value: number, digits: number): string =>
+    value.toLocaleString(locale, { minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false });
+  const number = (value: number | null, digits = 0): string => (value === null ? NONE : known(value, digits));
+  return {
+    number,
+    clock,
+    day: (ms) => days.format(ms),
+    moment: (ms) => (ms === null ? NONE : moments.format(ms)),
+    milliseconds: (ms) => (ms === null ? NONE : `${Math.round(ms / 10) * 10} ms`),
+    ms: (value) => (value === null ? NONE : `${known(value, 0)} ms`),
+    pair: (a, b, digits = 0) => `${number(a, digits)} / ${number(b, digits)}`,
+    percent: (share) => (share === null ? NONE : `${known(100 * share, 0)} %`),
+    degrees: (celsius) => (celsius === null ? NONE : `${known(celsius, 0)} °C`),
+    size: (mb) => {
+      if (mb === null) return NONE;
+      return mb < 1024 ? `${known(mb, 0)} MB` : `${known(mb / 1024, 1)} GB`;
+    },
+    pace: (factor) => `${{ 0.25: '¼', 0.5: '½' }[factor] ?? factor.toLocaleString(locale)}×`,
+    estimate: (value, sigma, unit) => {
+      const digits = digitsOf(sigma);
+      return { value: known(value, digits), sigma: known(sigma, digits), unit: UNITS[unit] ?? (unit && ` ${unit}`) };
+    },
+  };
+}
+
+/** Minutes and seconds, with hours where there are any; the same in all languages. */
+function clock(s: number | null): string {
+  if (s === null) return NONE;
+  const whole = Math.floor(s);
+  const minutes = Math.floor(whole / 60) % 60;
+  const hours = Math.floor(whole / 3600);
+  const parts = hours > 0 ? [hours, String(minutes).padStart(2, '0')] : [minutes];
+  return [...parts, String(whole % 60).padStart(2, '0')].join(':');
+}
+
+/** Digits that say something: one of the uncertainty, at most two after the point. */
+function digitsOf(sigma: number): number {
+  if (sigma >= 0.95) return 0;
+  return sigma >= 0.095 ? 1 : 2;
+}
