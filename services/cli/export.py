@@ -2,20 +2,21 @@
 
 import errno
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import typer
 
 from models.errors import UserError
 from services.cli.duration import clock
+from services.cli.lesson_attempts import attempts_of, recorded_feedbacks
 from services.cli.progress import ProgressLine
 from services.evaluation.track import Track
 from services.lesson.export.formats import files_of
 from services.lesson.export.kinds import Format
 from services.lesson.export.take import Take, TakeError
 from services.lesson.layout import SUFFIX
-from services.lesson.lesson_reader import open_lesson
+from services.lesson.lesson_reader import Lesson, open_lesson
 from services.lesson.replay import configuration
 from services.lesson.stretches import Stretch, stretches
 from services.logs.printable import printable
@@ -24,44 +25,67 @@ from services.support.new_file import write_new
 _LONGEST_CODE = 40
 
 
-def export(file: Path, kind: Format, folder: Path, attempt: int | None, pupil: str) -> None:
+@dataclass(frozen=True)
+class Order:
+    """What is asked for.
+
+    Attributes:
+        kind: the format.
+        folder: where to; it is made if it is not there.
+        attempt: of the lesson's attempts, counted from 1 as `kinebox report` does; all of the lesson if None.
+        pupil: code that is put into the files.
+    """
+
+    kind: Format
+    folder: Path
+    attempt: int | None = None
+    pupil: str = ""
+
+
+def export(file: Path, data: Path, site: Path | None, order: Order) -> None:
     """Write a lesson's motion into a folder, and say what was written.
 
     Args:
         file: of the lesson.
-        kind: the format.
-        folder: where to; it is made if it is not there.
-        attempt: of the lesson's attempts, counted from 1; all of the lesson if None.
-        pupil: code that is put into the files.
+        data: the data folder, with the school's own teaching.
+        site: the site file, if attempts shall be looked for by another than the lesson's own.
+        order: what is asked for.
 
     Raises:
         UserError: the pupil has no code that can be written, the file is no lesson that can be read, there is nothing in it to
             export, there is no such attempt, or it cannot be written; nothing was written then, or only files before it, whole.
     """
-    if not (pupil.isprintable() and len(pupil) <= _LONGEST_CODE):
+    if not (order.pupil.isprintable() and len(order.pupil) <= _LONGEST_CODE):
         raise UserError(f"--pupil: a code has at most {_LONGEST_CODE} characters that can be printed; choose another")
-    found = _read(file)
     name = file.name.removesuffix(SUFFIX)
-    takes = _all(found, name, pupil, file) if attempt is None else [_one(found, attempt, name, pupil, file)]
+    with open_lesson(file) as lesson, ProgressLine() as progress:
+        found = _stretches(lesson, data, site, progress, evaluate=order.attempt is not None)
+    takes = _all(found, name, order.pupil, file) if order.attempt is None else [_one(found, order.attempt, name, order.pupil, file)]
     files: dict[Path, bytes] = {}
     for take in takes:
         try:
-            files |= {folder / name: data for name, data in files_of(take, kind).items()}
+            files |= {order.folder / label: content for label, content in files_of(take, order.kind).items()}
         except TakeError as error:
             raise UserError(f"{take.name} of lesson {file} {error}; choose trc or c3d, which need no bones") from error
-    _write(files, folder)
+    _write(files, order.folder)
     for take in takes:
-        typer.echo(printable(f"{folder / f'{take.name}.{kind}'}: {_told(take)}"))
+        typer.echo(printable(f"{order.folder / f'{take.name}.{order.kind}'}: {_told(take)}"))
 
 
-def _read(file: Path) -> list[Stretch]:
-    with open_lesson(file) as lesson, ProgressLine() as progress:
-        frame_s = configuration(lesson.header.preset).frame_s
-        begun_ns = lesson.header.started_ns
-        lesson.require_entries()
-        found = stretches(lesson.parts(), frame_s, lambda t_ns: progress.show(f"read {clock(max(t_ns - begun_ns, 0) * 1e-9)}"))
+def _stretches(lesson: Lesson, data: Path, site: Path | None, progress: ProgressLine, *, evaluate: bool) -> list[Stretch]:
+    """Attempts are those that were told on the day; if there are none and `evaluate`, those that are found now."""
+    frame_s = configuration(lesson.header.preset).frame_s
+    lesson.require_entries()
+    feedbacks = recorded_feedbacks(lesson)
+
+    def watch(t_ns: int) -> None:
+        progress.show(f"read {clock(max(t_ns - lesson.header.started_ns, 0) * 1e-9)}")
+
+    if evaluate and not feedbacks:
+        feedbacks = attempts_of(lesson, data, site, progress).feedbacks
+    found = stretches(lesson.parts(), frame_s, feedbacks, watch)
     if not found:
-        raise UserError(f"lesson {file} holds no motion: it ended too early; export a longer one")
+        raise UserError(f"lesson {lesson.path} holds no motion: it ended too early; export a longer one")
     return found
 
 
@@ -90,7 +114,7 @@ def _one(found: list[Stretch], attempt: int, name: str, pupil: str, file: Path) 
                 except TakeError as error:
                     raise UserError(f"attempt {attempt} of lesson {file} {error}; export another") from error
     if not numbers:
-        raise UserError(f"lesson {file} holds no attempts that were found as it was recorded; leave out --attempt")
+        raise UserError(f"lesson {file} holds no attempts that were found; leave out --attempt")
     raise UserError(f"lesson {file} has no attempt {attempt}; it has {_ranges(numbers)}")
 
 

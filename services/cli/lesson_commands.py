@@ -95,9 +95,10 @@ def export(
 
     os.environ.update(process_environment(data))  # before numpy and numba are imported
     from services.cli import lessons  # noqa: PLC0415
+    from services.cli.export import Order  # noqa: PLC0415
     from services.cli.export import export as write  # noqa: PLC0415
 
-    write(lessons.find(lesson, lessons.folder_of(data, site)), kind, out, attempt, pupil)
+    write(lessons.find(lesson, lessons.folder_of(data, site)), data, site, Order(kind, out, attempt, pupil))
 
 
 @lessons_app.callback(invoke_without_command=True)

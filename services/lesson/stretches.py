@@ -1,9 +1,9 @@
-"""The smooth motion of a recorded lesson, as tracks, and the attempts that were found while it was recorded.
+"""The smooth motion of a recorded lesson, as tracks, and the attempts in it.
 
 A stretch has one clock and no jump: a lesson has one, and one more after every gap and whenever its source begins anew.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from models.errors import UserError
@@ -19,7 +19,7 @@ _ROUNDING_S = 1e-6
 
 @dataclass(frozen=True)
 class LessonAttempt:
-    """An attempt as evaluation found it during the lesson.
+    """An attempt as evaluation found it.
 
     Attributes:
         number: counts the attempts of the lesson from 1.
@@ -52,20 +52,22 @@ class Stretch:
         return Stretch(self.track.part(first, end + 1), (attempt,))
 
 
-def stretches(parts: Iterable[LessonPart], frame_s: float, watch: Callable[[int], None] = lambda _t_ns: None) -> list[Stretch]:
+def stretches(
+    parts: Iterable[LessonPart], frame_s: float, feedbacks: Sequence[Feedback], watch: Callable[[int], None] = lambda _t_ns: None
+) -> list[Stretch]:
     """All stretches of a lesson in their order; empty if no motion was recorded.
 
     Args:
         parts: as the lesson's reader gives them.
         frame_s: from one smooth motion to the next, as fusion was configured.
+        feedbacks: all attempts of the lesson, in their order.
         watch: is told the time of each motion, CLOCK_MONOTONIC.
 
     Raises:
         UserError: an entry cannot be read, or motions do not follow one another in that step.
     """
     motions: dict[tuple[int, int], list[Motion]] = {}
-    attempts: dict[tuple[int, int], list[LessonAttempt]] = {}
-    segment = number = 0
+    segment = 0
     for part in parts:
         segment += part.begins_segment
         for entry in part.entries:
@@ -73,15 +75,11 @@ def stretches(parts: Iterable[LessonPart], frame_s: float, watch: Callable[[int]
                 motion = decode(entry, Motion)
                 motions.setdefault((segment, motion.epoch), []).append(motion)
                 watch(motion.t_ns)
-            elif entry.kind == "feedback":
-                number += 1
-                feedback = decode(entry, Feedback)
-                attempts.setdefault((segment, feedback.epoch), []).append(_attempt(number, feedback))
     try:
         tracks = {key: track_of(those, frame_s) for key, those in motions.items()}
     except ValueError as error:
         raise UserError(f"the lesson's motion is not as fusion makes it: {error}; use the KineBox that recorded it") from error
-    return [Stretch(track, _within(track, attempts.get(key, []))) for key, track in tracks.items()]
+    return [Stretch(track, _within(track, epoch, feedbacks)) for (_, epoch), track in tracks.items()]
 
 
 def _attempt(number: int, feedback: Feedback) -> LessonAttempt:
@@ -91,6 +89,7 @@ def _attempt(number: int, feedback: Feedback) -> LessonAttempt:
     return LessonAttempt(number, found, feedback.t_first_ns * 1e-9, last_ns * 1e-9)
 
 
-def _within(track: Track, attempts: list[LessonAttempt]) -> tuple[LessonAttempt, ...]:
+def _within(track: Track, epoch: int, feedbacks: Sequence[Feedback]) -> tuple[LessonAttempt, ...]:
+    attempts = (_attempt(number, feedback) for number, feedback in enumerate(feedbacks, start=1) if feedback.epoch == epoch)
     first_s, last_s = float(track.t_s[0]) - _ROUNDING_S, float(track.t_s[-1]) + _ROUNDING_S
     return tuple(each for each in attempts if first_s <= each.found.moments_s[0] and each.found.moments_s[-1] <= last_s)

@@ -17,7 +17,7 @@ from models.messages.feedback import Feedback
 from models.messages.lesson import Entry, FusionLog
 from models.messages.motion import JointState, Motion
 from services.cli import export as command
-from services.cli.export import export
+from services.cli.export import Order, export
 from services.evaluation.track import Track, known_track
 from services.lesson.export.kinds import Format
 from services.lesson.imports.file import read_motion
@@ -102,7 +102,7 @@ def with_attempts(folder: Path) -> Path:
 
 @pytest.mark.parametrize("kind", [Format.TRC, Format.C3D, Format.BVH])
 def test_the_motion_of_a_lesson_is_what_was_recorded(tmp_path: Path, kind: Format, capsys: pytest.CaptureFixture[str]) -> None:
-    export(with_attempts(tmp_path / "lessons"), kind, tmp_path / "out", None, "P07")
+    export(with_attempts(tmp_path / "lessons"), tmp_path, None, Order(kind, tmp_path / "out", None, "P07"))
     back = read_motion(tmp_path / f"out/lesson.{kind}")
     assert len(back) == len(WHOLE.track)
     off_m = np.linalg.norm(back.joints_m - WHOLE.track.joints_m, axis=2)
@@ -112,7 +112,7 @@ def test_the_motion_of_a_lesson_is_what_was_recorded(tmp_path: Path, kind: Forma
 
 @pytest.mark.parametrize("kind", list(Format))
 def test_every_format_is_written_with_its_attempts_and_nothing_else(tmp_path: Path, kind: Format) -> None:
-    export(with_attempts(tmp_path / "lessons"), kind, tmp_path / "out", None, "P07")
+    export(with_attempts(tmp_path / "lessons"), tmp_path, None, Order(kind, tmp_path / "out", None, "P07"))
     beside = {f"lesson.{kind}.json"} if kind in {Format.TRC, Format.BVH, Format.MOT} else set()
     assert {path.name for path in (tmp_path / "out").iterdir()} == {f"lesson.{kind}"} | beside
     for name in beside:
@@ -122,7 +122,7 @@ def test_every_format_is_written_with_its_attempts_and_nothing_else(tmp_path: Pa
 
 
 def test_one_attempt_is_cut_out_with_what_is_around_it(tmp_path: Path) -> None:
-    export(with_attempts(tmp_path / "lessons"), Format.TRC, tmp_path, 2, "")
+    export(with_attempts(tmp_path / "lessons"), tmp_path, None, Order(Format.TRC, tmp_path, 2, ""))
     back = read_motion(tmp_path / "lesson-attempt2.trc")
     np.testing.assert_allclose(back.joints_m, WHOLE.track.joints_m[42:81], atol=2e-5)
     (attempt,) = json.loads((tmp_path / "lesson-attempt2.trc.json").read_text())["attempts"]
@@ -140,7 +140,7 @@ def test_each_stretch_between_gaps_becomes_a_file_and_those_with_nobody_none(
         list(log_of(NOBODY, later_ns)),
         list(log_of(last, later_ns + SECOND_NS)),
     )
-    export(file, Format.C3D, tmp_path / "out", None, "")
+    export(file, tmp_path, None, Order(Format.C3D, tmp_path / "out", None, ""))
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["lesson-1.c3d", "lesson-3.c3d"]
     np.testing.assert_allclose(read_motion(tmp_path / "out/lesson-3.c3d").joints_m, last.joints_m, atol=1e-6)
     assert capsys.readouterr().err == "left out: lesson-2 has no frame in which a joint is known\n"
@@ -148,7 +148,7 @@ def test_each_stretch_between_gaps_becomes_a_file_and_those_with_nobody_none(
 
 def test_frames_that_are_missing_are_unknown_and_time_goes_on(tmp_path: Path) -> None:
     log = list(log_of(WHOLE.track, BEGIN_NS))
-    export(recorded(tmp_path, log[:40] + log[60:]), Format.C3D, tmp_path, None, "")
+    export(recorded(tmp_path, log[:40] + log[60:]), tmp_path, None, Order(Format.C3D, tmp_path, None, ""))
     back = read_motion(tmp_path / "lesson.c3d")
     assert len(back) == len(WHOLE.track)
     assert (back.states[20:30] == JointState.UNKNOWN).all()
@@ -158,7 +158,7 @@ def test_frames_that_are_missing_are_unknown_and_time_goes_on(tmp_path: Path) ->
 def refusal(file: Path, out: Path, attempt: int | None = None, kind: Format = Format.TRC) -> str:
     before = sorted(out.rglob("*")) if out.exists() else []
     with pytest.raises(UserError) as caught:
-        export(file, kind, out, attempt, "")
+        export(file, out, None, Order(kind, out, attempt))
     assert (sorted(out.rglob("*")) if out.exists() else []) == before, "something was written"
     assert "\n" not in str(caught.value)
     return str(caught.value)
@@ -226,7 +226,7 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize("code", ["P" * 41, "P\n07", "P\udcff"])
 def test_a_code_that_fits_into_no_file_is_refused(tmp_path: Path, code: str) -> None:
     with pytest.raises(UserError, match="--pupil: a code has at most 40 characters"):
-        export(with_attempts(tmp_path), Format.GLB, tmp_path, None, code)
+        export(with_attempts(tmp_path), tmp_path, None, Order(Format.GLB, tmp_path, None, code))
 
 
 @pytest.mark.slow
