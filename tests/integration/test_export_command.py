@@ -170,6 +170,21 @@ def test_an_attempt_that_is_not_there_is_refused_with_those_that_are(tmp_path: P
     assert f"lesson {without} holds no attempts" in refusal(without, tmp_path / "out", 1)
 
 
+@pytest.mark.slow
+def test_in_a_lesson_in_which_no_attempt_was_told_it_is_looked_for(tmp_path: Path) -> None:
+    joints = WHOLE.track.joints_m
+    waiting = np.concatenate([np.repeat(joints[:1], 60, axis=0), joints, np.repeat(joints[-1:], 60, axis=0)])
+    seen = known_track(waiting + np.random.default_rng(0).normal(0, 0.002, waiting.shape), FRAME_S, 0.01)
+    file = recorded(tmp_path / "lessons", list(log_of(seen, BEGIN_NS)))
+    export(file, tmp_path, None, Order(Format.TRC, tmp_path / "out", 1))
+    (attempt,) = json.loads((tmp_path / "out/lesson-attempt1.trc.json").read_text())["attempts"]
+    assert attempt["action"] == "badminton_clear"
+    first = read_motion(tmp_path / "out/lesson-attempt1.trc").joints_m[0]
+    begin = int(np.argmin(np.abs(seen.joints_m - first).sum(axis=(1, 2))))
+    peak_s = begin * FRAME_S + attempt["keyframes_s"]["peak"] - 60 * FRAME_S
+    assert peak_s == pytest.approx(WHOLE.attempts[0].moments_s[2], abs=0.1)
+
+
 def test_lessons_with_nothing_to_export_are_refused(tmp_path: Path) -> None:
     assert "is empty" in refusal(recorded(tmp_path, [], name="empty"), tmp_path / "out")
     ticks = [entry for entry in log_of(NOBODY, BEGIN_NS) if entry.kind == "tick"]

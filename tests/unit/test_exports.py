@@ -193,10 +193,19 @@ def test_what_is_held_is_listed_beside_the_file_with_pupil_and_keyframes() -> No
     assert list(files) == ["clear.bvh", "clear.bvh.json"]
     about_it = json.loads(files["clear.bvh.json"])
     assert about_it["held_frames"] == {"LeftForeArm": [[10, 20]], "LeftHand": [[10, 20]]}
+    assert about_it["guessed_frames"] == {}
     assert about_it["pupil"] == "P07"
     (attempt,) = about_it["attempts"]
     assert attempt["action"] == "badminton_clear"
     assert attempt["keyframes_s"]["peak"] == pytest.approx(whole.attempts[0].moments_s[2], abs=1e-6)
+
+
+def test_what_was_guessed_is_told_by_point_and_frame() -> None:
+    track = still(STANDING_M, 9).track
+    states = track.states.copy()
+    states[[0, 4, 5, 8], coco.INDEX["right_wrist"]] = JointState.GUESSED
+    take = Take(Track(track.t_s, track.joints_m, track.covariance_m2, states), "still")
+    assert take.about()["guessed_frames"] == {"RWrist": [[1, 1], [5, 6], [9, 9]]}
 
 
 def test_formats_that_say_everything_themselves_have_nothing_beside_them() -> None:

@@ -1,5 +1,7 @@
 """Series without holes for formats that allow none: what is unknown keeps its last value, and is said to be held."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from models.arrays import Bool, Float
@@ -17,7 +19,11 @@ def held(values: Float, known: Bool) -> Float:
     return np.asarray(values[np.where(last < 0, np.argmax(known), last)])
 
 
-def spans(flags: Bool) -> list[tuple[int, int]]:
-    """Frames, counted from 0, from which to which (with it) a flag (T,) is set."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)))
-    return [(int(first), int(end) - 1) for first, end in edges.reshape(-1, 2)]
+def told(flags: Mapping[str, Bool]) -> dict[str, list[list[int]]]:
+    """For each name whose flag (T,) is ever set, the frames, counted from 1, from which to which (with it) that is so."""
+    found = {}
+    for name, flag in flags.items():
+        edges = np.flatnonzero(np.diff(np.concatenate(([False], flag, [False])).astype(np.int8)))
+        if len(edges):
+            found[name] = [[int(first) + 1, int(end)] for first, end in edges.reshape(-1, 2)]
+    return found

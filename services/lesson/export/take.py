@@ -9,6 +9,8 @@ from models.arrays import Bool, Float
 from models.messages.motion import JointState
 from services.evaluation.attempt import PHASES, FoundAttempt
 from services.evaluation.track import Track
+from services.lesson.export.holding import told
+from services.lesson.export.labels import LABELS
 
 
 class TakeError(ValueError):
@@ -85,7 +87,8 @@ class Take:
         return np.arange(len(self.track)) / self.rate_hz
 
     def about(self) -> dict[str, Any]:
-        """What is known beside the motion, for formats and files that take JSON."""
+        """What is known beside the motion, for formats and files that take JSON. Frames are counted from 1, the last is with it."""
+        guessed = self.track.states == JointState.GUESSED
         return {
             "source": "KineBox",
             "pupil": self.pupil,
@@ -99,6 +102,7 @@ class Take:
                 }
                 for number, attempt in enumerate(self.attempts, start=1)
             ],
+            "guessed_frames": told({label: guessed[:, joint] for joint, label in enumerate(LABELS)}),
         }
 
     def _keyframes(self) -> list[Keyframe]:
