@@ -10,10 +10,9 @@ from typing import Final
 import numpy as np
 
 from models.arrays import Float
-from models.body import kinematics
 from models.compiled import Counts
+from models.motions import flesh
 from models.motions.figure import Figure
-from models.skeleton import smpl
 
 PATCH_M: Final = 0.004
 """How fast the skin's share in the contact falls off with its height over the lowest."""
@@ -44,9 +43,7 @@ class Rolled:
 
 def trunk_skin(figure: Figure) -> Counts:
     """Indices of the vertices of trunk, head and buttocks."""
-    skin = figure.subject.body.model.skin
-    carrier = np.take_along_axis(skin.joints, skin.weights.argmax(1)[:, None], axis=1)[:, 0]
-    return np.flatnonzero(np.isin(carrier, [smpl.INDEX[name] for name in _TRUNK]))
+    return flesh.carried_by(figure, _TRUNK)
 
 
 def roll(figure: Figure, local: Float) -> Rolled:
@@ -55,14 +52,8 @@ def roll(figure: Figure, local: Float) -> Rolled:
     trunk = trunk_skin(figure)
     area = _areas(body.rest_vertices_m, body.model.faces)[trunk]
     placed = figure.place_local(np.zeros((len(local), 3)), local)
-    rest, skin = body.rest_vertices_m[trunk], body.model.skin
-    joints, weights = skin.joints[trunk], skin.weights[trunk]
-    places = np.array(
-        [
-            kinematics.skin(body.rest_joints_m, at, turned, rest, joints, weights)
-            for at, turned in zip(placed.joints_m, placed.turns, strict=True)
-        ]
-    )
+    rest = body.rest_vertices_m[trunk]
+    places = flesh.places_m(figure, trunk, placed)
     lowest = places[..., 2].min(1)
     shares = area * np.exp((lowest[:, None] - places[..., 2]) / PATCH_M)
     shares /= shares.sum(1, keepdims=True)

@@ -18,6 +18,7 @@ from models.skeleton import smpl
 
 PITCH_DEG: Final = (-50.0, 58.0)
 _STEP_DEG: Final = 2.0
+_TOUCHES_M: Final = 0.005
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +41,13 @@ class Sole:
         """Forward and up of the ankle against the footprint, at pitches within `PITCH_DEG`."""
         forward, up = (np.interp(pitch_rad, self.pitches_rad, column) for column in self.ankles_m.T)
         return forward, up
+
+    @property
+    def heel_m(self) -> float:
+        """Forward of where the heel ends that a flat foot stands on, against the footprint: below 0."""
+        forward, up = self.ankle_m(np.zeros(1))
+        touches = self.shares[0] * (up + self.under_m[0, :, 2]) < _TOUCHES_M
+        return float(forward[0] + self.under_m[0, touches, 0].min())
 
     def lowest_m(self, joints_m: Float, turns: Float) -> Float:
         """(T,) the lowest skin over the floor, for (T, 2, 3) ankles and toes' joints and their (T, 2, 3, 3) turns in the world."""

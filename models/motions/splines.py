@@ -55,6 +55,12 @@ def minimum_jerk(share: Float) -> Float:
     return np.asarray(u**3 * (10 - 15 * u + 6 * u**2))
 
 
+def lasting(times_s: Float, from_s: float, to_s: float, ease_s: float) -> Float:
+    """(T,) 1 between two times, 0 outside, with this much time to go from one to the other."""
+    up, down = minimum_jerk((times_s - from_s + ease_s) / ease_s), minimum_jerk((times_s - to_s) / ease_s)
+    return np.asarray(up - down)
+
+
 def softened(values: Float, sigma_samples: float) -> Float:
     """(T, ...) smoothed along time by a Gaussian; the ends are held. It rounds the corners that knots leave in the acceleration."""
     reach = int(np.ceil(4 * sigma_samples))

@@ -48,12 +48,12 @@ def walk_off(figure: Figure, from_s: float, at_m: float, edge_m: float, count: i
         at_m: x of the feet.
         edge_m: x of the mat's end.
         count: T, at `RATE_HZ`.
-        height_m: of the mat over the floor.
+        height_m: of where he stands over the floor; who stands on the floor stays.
     """
     leg = figure.leg_m
     before, behind = edge_m - _BEFORE_LEGS * leg - at_m, edge_m + _BEHIND_LEGS * leg - at_m
     strides = max(0, int(np.ceil(before / (_STRIDE_LEGS * leg) - 0.2)))
-    marks = [*(before * (number + 1) / strides for number in range(strides)), behind, behind]
+    marks = [*(before * (number + 1) / strides for number in range(strides)), behind, behind] if height_m > 0 else []
     times = np.arange(count) / RATE_HZ
     steps = {side: np.zeros((count, 3)) for side in ("left", "right")}
     pitch = {side: np.zeros(count) for side in ("left", "right")}

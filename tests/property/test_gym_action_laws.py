@@ -108,6 +108,68 @@ def test_hands_and_feet_neither_slide_nor_sink_for_everybody(action: str, data: 
     assert_borne(motion, subject, measured(motion, subject, every=1000), action == "forward_roll", sinks_m=0.025, every=12)
 
 
+ONCE_BROKEN = {
+    "elbows went into the mat": (
+        Somebody(18.0, "female", 754),
+        Performance("forward_roll", tempo=1.22, amplitude=1.12, faults={"legs_open": 0.8}, seed=574),
+    ),
+    "shoulders turned 50 degrees too far": (
+        Somebody(16.0, "female", 484),
+        Performance("forward_roll", tempo=0.7, amplitude=1.11, faults={"legs_open": 1.3}, seed=426),
+    ),
+    "a hand that bore was lifted by its next turn": (
+        Somebody(50.0, "male", 198),
+        Performance("forward_roll", tempo=0.94, faults={"hands_to_get_up": 1.9}, seed=535),
+    ),
+    "landed at the height of a mat that ends before": (
+        Somebody(40.1, "male", 83),
+        Performance("forward_roll", tempo=1.4, amplitude=0.8, skill=0.0, faults={"head_not_tucked": 2.0}, seed=870),
+    ),
+    "hips bent too far to get up": (
+        Somebody(37.2, "female", 235),
+        Performance("forward_roll", "left", tempo=1.32, amplitude=0.8, skill=0.0, seed=494),
+    ),
+    "legs opened further than hips turn": (
+        Somebody(20.5, "female", 108),
+        Performance("forward_roll", "left", tempo=0.75, amplitude=0.93, skill=0.5, faults={"legs_open": 2.0}, seed=2),
+    ),
+    "legs spread further than bent hips turn": (
+        Somebody(33.5, "female", 249),
+        Performance("cartwheel", "left", tempo=1.28, amplitude=1.13, faults={"no_straight_line": 1.9}, seed=381),
+    ),
+    "sank deeper than hips bend": (
+        Somebody(47.7, "female", 371),
+        Performance("squat", tempo=1.12, amplitude=1.2, skill=0.0, seed=620),
+    ),
+    "knees fell in further than ankles turn": (
+        Somebody(42.7, "female", 733),
+        Performance("squat", "left", tempo=1.18, amplitude=1.2, faults={"knees_in": 2.0}, seed=306),
+    ),
+    "landed with hips bent too far": (
+        Somebody(21.2, "female", 161),
+        Performance("long_jump", "left", tempo=1.15, amplitude=1.1, skill=0.5, seed=853),
+    ),
+    "a hand went into the floor in landing": (
+        Somebody(14.0, "male", 186),
+        Performance("long_jump", tempo=1.08, amplitude=0.8, skill=0.0, faults={"no_arm_swing": 0.8}, seed=329),
+    ),
+}
+"""What random searches found, by what was wrong."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", ONCE_BROKEN)
+def test_who_once_broke_a_law_keeps_it(case: str) -> None:
+    who, performance = ONCE_BROKEN[case]
+    subject = who.subject()
+    motion = perform(performance, subject)
+    if performance.action in FLOOR:
+        on_mat = performance.action == "forward_roll"
+        assert_borne(motion, subject, measured(motion, subject, every=1000), on_mat, sinks_m=0.025)
+    else:
+        assert_lawful(motion, subject, every=8)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("age", "sex"), [(7, "female"), (10, "male"), (30, "male")])
 def test_the_roll_rolls_from_nape_to_seat_and_the_back_does_not_slide(age: float, sex: Sex) -> None:

@@ -18,6 +18,7 @@ from models.motions.mirror import mirror_image, mirrored
 from models.motions.motion import CONTACTS, RATE_HZ, Attempt, Motion
 from models.motions.natural import Natural
 from models.motions.performance import Performance
+from models.motions.ranges import beyond_deg
 from models.motions.standing import TOES_OUT_DEG, standing_values
 from models.motions.subject import Subject
 from models.motions.timeline import snapped
@@ -60,7 +61,10 @@ _BACK: Final = 0.46
 _STEP: Final = 0.78
 """How far the first foot steps to the side, legs."""
 _SPREAD_DEG: Final = 62.0
-"""No leg is spread further to its side."""
+"""No leg is spread further to its side; less, if the hips do not give it."""
+_BEYOND_DEG: Final = 3.0
+"""What is let pass of a hip that is spread beyond its range."""
+_TRIES: Final = 4
 _TURNED_OUT_DEG: Final = 34.0
 """How much further than in standing the foot that carries alone points to the side."""
 _HANDS_APART: Final = 0.46
@@ -105,8 +109,20 @@ def perform(performance: Performance, subject: Subject) -> Motion:
 
 def _left_first(performance: Performance, subject: Subject) -> Motion:
     """To the left, with the left hand and foot first."""
+    spread_deg = _SPREAD_DEG
+    for _ in range(_TRIES):
+        motion = _wheel(performance, subject, spread_deg)
+        beyond = beyond_deg(motion, subject, "hip", 0)
+        if beyond < _BEYOND_DEG:
+            break
+        spread_deg -= 1.3 * beyond
+    return motion
+
+
+def _wheel(performance: Performance, subject: Subject, spread_deg: float) -> Motion:
+    """No leg is spread further than so."""
     figure = figure_of(subject)
-    course = _course(performance)
+    course = _course(performance, spread_deg)
     values, contacts = _values(figure, course, performance)
     local = posing.upper_body(figure, values)
     about_x, about_z = np.radians(-course.column["roll"]), np.radians(course.column["turn"])
@@ -144,7 +160,7 @@ def _placed(figure: Figure, values: dict[str, Float], hands: tuple[palms.Palm, .
     return figure.centres_of_mass_m(figure.place_local(pelvis, local))
 
 
-def _course(performance: Performance) -> _Course:
+def _course(performance: Performance, spread_deg: float) -> _Course:
     natural, severity = Natural(performance), performance.severity
     first = _KEYS.copy()
     names = dict(zip(_COLUMNS, first[:, 1:].T, strict=True))
@@ -152,7 +168,7 @@ def _course(performance: Performance) -> _Course:
     for side in ("left", "right"):
         names[f"{side}_out"][_SECOND_HAND:] *= spread
         names[f"{side}_out"][_FIRST_HAND:] += float(natural("lean", np.zeros(1))[0])
-        np.minimum(names[f"{side}_out"], _SPREAD_DEG, out=names[f"{side}_out"])
+        np.minimum(names[f"{side}_out"], spread_deg, out=names[f"{side}_out"])
         names[f"{side}_knee"][_SECOND_HAND:] += 55 * severity("bent_legs") + abs(float(natural("bend", np.zeros(1))[0]))
         names[f"{side}_arm"][_ARMS_UP:] += float(natural("lean", np.zeros(1))[0])
     gaps = np.diff(first[:, 0])

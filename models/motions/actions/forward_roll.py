@@ -11,14 +11,16 @@ import numpy as np
 
 from models.arrays import Bool, Float
 from models.body.limits import limits_rad
-from models.motions import mat, palms, posing, rotations, splines
+from models.motions import mat, posing, rotations, splines
 from models.motions.actions.action import Action, Fault
+from models.motions.actions.roll_hands import Support, bear
 from models.motions.carrying import carried, over_foot, shares, smooth
 from models.motions.figure import Figure, figure_of
 from models.motions.mirror import mirror_image, mirrored
 from models.motions.motion import CONTACTS, RATE_HZ, Attempt, Motion
 from models.motions.natural import Natural
 from models.motions.performance import Performance
+from models.motions.ranges import beyond_deg
 from models.motions.rolling import roll
 from models.motions.standing import standing_values
 from models.motions.subject import Subject
@@ -55,21 +57,26 @@ _SOFT_ROLL_S: Final = 0.008
 _SEAT_STAYS_S: Final = 0.03
 """The seat stays on the mat so long after the feet have landed."""
 _LEG_OF_KEYS_M: Final = 0.64
-_FINGERS_IN_RAD: Final = np.radians(32.0)
 _SUPPLE_DEG: Final = 150.0
 """Whose hips bend less gets up with the pelvis tipped less far over the thighs: by this share of what they bend less, as the feet
 land and as he is up on them."""
 _STIFF_SHARES: Final = (0.3, 0.9)
+_HIP_SPARE_DEG: Final = 4.0
+"""No leg is opened further than to so much from where the hip ends."""
 _SIDES: Final = ("left", "right")
 _NECK_SHARE: Final = 0.46
-_OUT: Final = (0.6, 0.9, 0.2)
-"""Where the elbows point while the hands bear."""
+_OUT, _OUT_BEHIND = (0.6, 0.9, 0.2), (-0.8, 0.6, 0.2)
+"""(front, out, up) where the elbows point while the hands bear: before the roll and after it."""
+_NEARER_ARMS: Final = (0.0, 0.06, 0.12, 0.18, 0.24, 0.3)
+"""How much nearer to the feet the hands are put, arms: the first that the arms allow."""
+_BEYOND_DEG: Final = 2.5
+"""What is let pass of hips that bend beyond their range."""
+_ROUNDS: Final = 4
+"""How often hips that would bend too far are asked for less."""
 _FAR_UP_M: Final = 9.0
 """Where no floor is in the way of legs that go by their angles."""
 _CORNER_M: Final = 0.002
 _TOUCHES_M: Final = 0.003
-_LIES_M: Final = 0.004
-"""A palm that bears is not further than this from where it was put; in the end the wrist bends no further, and it leaves."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,13 +106,13 @@ class _Way:
         pelvis_m: (T, 3).
         on_back: (T,) whether the back or the head touches the mat.
         lands_s: when the feet land.
-        landed_m: x of their prints.
+        landed_m: (3,) their prints' middle, on the mat or, of who is tall, on the floor behind it.
     """
 
     pelvis_m: Float
     on_back: Bool
     lands_s: float
-    landed_m: float
+    landed_m: Float
 
 
 def perform(performance: Performance, subject: Subject) -> Motion:
@@ -117,21 +124,32 @@ def perform(performance: Performance, subject: Subject) -> Motion:
 
 def _right_first(performance: Performance, subject: Subject) -> Motion:
     """The right foot steps off the mat first."""
-    figure = figure_of(subject)
     limits = limits_rad(subject.age_years)
-    course = _course(performance, figure, -float(np.degrees(limits[smpl.INDEX["left_hip"], 1, 0])))
+    bend_deg = -float(np.degrees(limits[smpl.INDEX["left_hip"], 1, 0]))
+    for _ in range(_ROUNDS):
+        motion, lands_s = _with_hips(performance, subject, limits, bend_deg)
+        beyond = beyond_deg(motion, subject, "hip", 1, lands_s)
+        if beyond < _BEYOND_DEG:
+            break
+        bend_deg -= 2 * beyond
+    return motion
+
+
+def _with_hips(performance: Performance, subject: Subject, limits: Float, bend_deg: float) -> tuple[Motion, float]:
+    """The roll of somebody who asks so much of his hips to get up, and when his feet land."""
+    figure = figure_of(subject)
+    course = _course(performance, figure, limits, bend_deg)
     values = _values(figure, course)
     local = posing.upper_body(figure, values)
     _tuck(course, limits, local)
     way = _way(figure, course, values, local)
-    walk = walk_off(
-        figure, float(course.at_s[-1]) + 0.1, way.landed_m, mat.FROM_M + mat.LENGTH_M, len(course.times_s), mat.HEIGHT_M
-    )
+    x_m, _, ground_m = way.landed_m
+    walk = walk_off(figure, float(course.at_s[-1]) + 0.1, x_m, mat.FROM_M + mat.LENGTH_M, len(course.times_s), ground_m)
     contacts = _stand_on_feet(figure, course, values, walk, way)
     pelvis = way.pelvis_m + walk.shift_m
     posing.legs(figure, values, pelvis, local)
-    for side in _SIDES:
-        contacts[:, CONTACTS.index(f"{side}_hand")] = _bear_on_hands(figure, course, way, side, pelvis, local)
+    hands = [CONTACTS.index(f"{side}_hand") for side in _SIDES]
+    contacts[:, hands] = bear(figure, course.times_s, _supports(course, way), pelvis, local)
     contacts[:, CONTACTS.index("trunk")] = way.on_back
     end = round(walk.end_s * RATE_HZ) + round(_STILL_S * RATE_HZ) + 1
     at_s = course.at_s
@@ -139,10 +157,10 @@ def _right_first(performance: Performance, subject: Subject) -> Motion:
         "forward_roll", performance.handed, float(at_s[0]), float(at_s[_PUSH]), float(at_s[_BACK]), float(at_s[-1]),
         tuple(performance.faults.items()),
     )  # fmt: skip
-    return Motion(pelvis[:end], rotations.vectors(local[:end]), contacts[:end], (attempt,))
+    return Motion(pelvis[:end], rotations.vectors(local[:end]), contacts[:end], (attempt,)), way.lands_s
 
 
-def _course(performance: Performance, figure: Figure, hips_bend_deg: float) -> _Course:
+def _course(performance: Performance, figure: Figure, limits: Float, hips_bend_deg: float) -> _Course:
     natural, severity = Natural(performance), performance.severity
     untucked, apart, hands = severity("head_not_tucked"), severity("legs_open"), severity("hands_to_get_up")
     keys = _KEYS.copy()
@@ -168,14 +186,9 @@ def _course(performance: Performance, figure: Figure, hips_bend_deg: float) -> _
     count = round((at_s[-1] + 6.0) * RATE_HZ)
     times = np.arange(count) / RATE_HZ
     sampled = smooth(np.radians(splines.monotone(at_s, keys[:, 1:], times)), _SOFT_S)
-    open_deg = (4 + 22 * apart) * _while(times, at_s[_FEET_OFF], at_s[_BACK], 0.25)
+    widest_deg = np.degrees(limits[smpl.INDEX["left_hip"], 2, 1]) - _HIP_SPARE_DEG
+    open_deg = min(4 + 22 * apart, widest_deg) * splines.lasting(times, at_s[_FEET_OFF], at_s[_BACK], 0.25)
     return _Course(times, at_s, dict(zip(_COLUMNS, sampled.T, strict=True)), open_deg, min(hands, 1.0))
-
-
-def _while(times_s: Float, from_s: float, to_s: float, ease_s: float) -> Float:
-    """(T,) 1 between two times, 0 outside, with this much time to go from one to the other."""
-    up, down = splines.minimum_jerk((times_s - from_s + ease_s) / ease_s), splines.minimum_jerk((times_s - to_s) / ease_s)
-    return np.asarray(up - down)
 
 
 def _values(figure: Figure, course: _Course) -> dict[str, Float]:
@@ -228,15 +241,17 @@ def _way(figure: Figure, course: _Course, values: dict[str, Float], local: Float
 
     # The feet land where they come down by themselves, and from then on the body goes from the seat over to them.
     soles = (way + placed.joints_m[:, [smpl.INDEX["left_ankle"]]][:, 0])[:, 2] - figure.soles["left"].ankle_m(heel)[1]
-    coming = np.flatnonzero((soles < mat.HEIGHT_M) & (times > at_s[_BACK]))
-    lands = int(coming[0])
-    landed = float(way[lands, 0] - over_feet[lands, 0])
+    for ground_m in (mat.HEIGHT_M, 0.0):
+        lands = int(np.flatnonzero((soles < ground_m) & (times > at_s[_BACK]))[0])
+        landed = np.array((way[lands, 0] - over_feet[lands, 0], 0.0, ground_m))
+        if landed[0] + figure.soles["left"].heel_m < mat.FROM_M + mat.LENGTH_M:
+            break
     over_s = at_s[_UP] + 0.1 - times[lands] - _SEAT_STAYS_S
     rises = splines.minimum_jerk((times - times[lands] - _SEAT_STAYS_S) / over_s)[:, None]
-    way = (1 - rises) * way + rises * (over_feet + np.array((landed, 0.0, mat.HEIGHT_M)))
+    way = (1 - rises) * way + rises * (over_feet + landed)
 
     # Keyed legs stand a few millimetres beside `stand`.
-    behind_m = np.array((landed - home["left_foot.place"][0], 0.0, mat.HEIGHT_M))
+    behind_m = landed - np.array((home["left_foot.place"][0], 0.0, 0.0))
     settle = splines.minimum_jerk((times - at_s[0]) / 0.4)[:, None]
     rise = splines.minimum_jerk((times - at_s[-1] + 0.4) / 0.4)[:, None]
     way = way + (1 - settle) * (home["pelvis"] - way[0]) + rise * (home["pelvis"] + behind_m - way[-1])
@@ -267,7 +282,7 @@ def _stand_on_feet(figure: Figure, course: _Course, values: dict[str, Float], wa
     for side in _SIDES:
         place = values[f"{side}_foot.place"]
         later = times > (off + on) / 2
-        place[later] = np.array((way.landed_m, home[f"{side}_foot.place"][1], mat.HEIGHT_M))
+        place[later] = way.landed_m + home[f"{side}_foot.place"] * np.array((0.0, 1.0, 0.0))
         place += walk.steps_m[side]
         values[f"{side}_foot.hold"] = (
             1 - splines.minimum_jerk((times - off) / 0.12) + splines.minimum_jerk((times - on + 0.12) / 0.12)
@@ -277,36 +292,13 @@ def _stand_on_feet(figure: Figure, course: _Course, values: dict[str, Float], wa
     return contacts
 
 
-def _bear_on_hands(figure: Figure, course: _Course, way: _Way, side: str, pelvis: Float, local: Float) -> Bool:
-    """Put a hand on the mat before the roll, and with the fault beside the hips after it. Returns (T,) when it bears."""
-    times, at_s = course.times_s, course.at_s
-    count, mirror = len(times), 1.0 if side == "left" else -1.0
-    shoulder = figure.place_local(pelvis, local).joints_m[:, smpl.INDEX[f"{side}_shoulder"]]
-    width = 1.15 * abs(float(shoulder[0, 1]))
-    up = mat.HEIGHT_M + palms.wrist_height_m(figure, side)
-    bearing = np.zeros(count, bool)
-    nape_s = float(times[np.argmax(way.on_back)])
-    turns = [(at_s[_HANDS_DOWN], nape_s, 1.0, width, (_OUT[0], _OUT[1] * mirror, _OUT[2]))]
-    if course.propped > 0:
-        turns.append((at_s[_SEAT], at_s[_UP], course.propped, 1.3 * width, (-0.8, 0.6 * mirror, 0.2)))
-    for from_s, to_s, share, wide, out in turns:
-        during = (times >= from_s) & (times <= to_s)
-        # Half way between where the shoulders are at first and at last, within reach of both.
-        place = np.array((float(shoulder[during, 0].mean()), mirror * wide, up))
-        palm = palms.Palm(
-            side,
-            np.tile(place, (count, 1)),
-            np.full(count, -mirror * _FINGERS_IN_RAD),
-            share * _while(times, from_s, to_s, 0.2),
-            np.tile(out, (count, 1)),
-            points=False,
-        )
-        palms.bear(figure, palm, pelvis, local)
-        palms.settle(figure, side, mat.HEIGHT_M, during & (share >= 1), pelvis, local)
-        placed = figure.place_local(pelvis, local)
-        moved = np.linalg.norm((placed.joints_m[:, smpl.INDEX[f"{side}_wrist"]] - place)[:, :2], axis=1)
-        bearing |= during & (moved < _LIES_M) & (palms.lowest_m(figure, side, placed) - mat.HEIGHT_M < _LIES_M)
-    return bearing
+def _supports(course: _Course, way: _Way) -> list[Support]:
+    """Of the hands: before the roll, and with the fault in getting up."""
+    at_s = course.at_s
+    rolls_s = float(course.times_s[np.argmax(way.on_back)])
+    before = Support(float(at_s[_HANDS_DOWN]), rolls_s, 1.0, 1.15, _OUT, _NEARER_ARMS)
+    behind = Support(float(at_s[_SEAT]), float(at_s[_UP]), course.propped, 1.3, _OUT_BEHIND)
+    return [before, behind] if course.propped > 0 else [before]
 
 
 ACTION: Final = Action(

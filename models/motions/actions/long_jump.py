@@ -6,10 +6,12 @@ from typing import Final
 import numpy as np
 
 from models.body.pose import t_pose
+from models.motions import palms
 from models.motions.actions.action import Action, Fault
 from models.motions.motion import Attempt, Motion
 from models.motions.natural import Natural
 from models.motions.performance import Performance
+from models.motions.ranges import beyond_deg
 from models.motions.standing import TOES_OUT_DEG
 from models.motions.subject import Subject
 from models.motions.timeline import Side, Timeline, snapped
@@ -31,6 +33,9 @@ _LEG_M: Final = 0.64
 """Of whom the durations of push-off and landing are; others' go by the root of the leg's length."""
 _SIDES: Final[tuple[Side, Side]] = ("left", "right")
 _HANGING: Final = (0.02, 0.17, -1.0)
+_BEYOND_DEG: Final = 1.5
+"""What is let pass of hips that bend beyond their range."""
+_ROUNDS: Final = 4
 
 
 @dataclass(frozen=True)
@@ -46,7 +51,19 @@ class _Times:
 
 
 def perform(performance: Performance, subject: Subject) -> Motion:
-    """See `models.motions.perform.perform`."""
+    """See `models.motions.perform.perform`. Nobody's trunk comes nearer to the thighs in landing than the hips bend."""
+    upright_deg = 0.0
+    for _ in range(_ROUNDS):
+        motion = _jump(performance, subject, upright_deg)
+        beyond = beyond_deg(motion, subject, "hip", 1)
+        if beyond < _BEYOND_DEG:
+            break
+        upright_deg += 1.2 * beyond
+    return motion
+
+
+def _jump(performance: Performance, subject: Subject, upright_deg: float) -> Motion:
+    """With the pelvis so much more upright after the landing."""
     natural, severity = Natural(performance), performance.severity
     no_swing, stiff, no_crouch, upright = (
         severity(name) for name in ("no_arm_swing", "stiff_landing", "no_crouch", "upright_takeoff")
@@ -86,13 +103,20 @@ def perform(performance: Performance, subject: Subject) -> Motion:
         ),
     )
     line.flight(off, on)
-    line.key(on + 0.4 * (deep - on), Body(tip=-6, lean=57 - 16 * stiff))
-    line.key(deep, Body(at=(far - 0.04, 0.0), height=0.59 + 0.13 * stiff, tip=40 - 11 * stiff, lean=22 - 7 * stiff, gaze=(0, 15)))
+    line.key(on + 0.4 * (deep - on), Body(tip=-6 - upright_deg, lean=57 - 16 * stiff))
+    line.key(
+        deep,
+        Body(
+            at=(far - 0.04, 0.0), height=0.59 + 0.13 * stiff, tip=40 - 11 * stiff - upright_deg, lean=22 - 7 * stiff, gaze=(0, 15)
+        ),
+    )
     _swing_arms(line, times, max(0.0, 1 - 0.5 * no_swing))
     for side in _SIDES:
         _leap(line, side, times, far, 18 - 8 * stiff)
     line.stand(times.end, (far, 0.0))
     poses = line.poses(times.end + _STILL_S)
+    for side in _SIDES:
+        palms.settle(line.figure, side, 0.0, np.zeros(len(poses.times_s), bool), poses.pelvis_m, poses.local)
     heights = line.figure.centres_of_mass_m(line.figure.place_local(poses.pelvis_m, poses.local))[:, 2]
     top = float(poses.times_s[np.argmax(np.where((poses.times_s > off) & (poses.times_s < on), heights, -np.inf))])
     attempt = Attempt("long_jump", performance.handed, _STILL_S, low, top, times.end, tuple(performance.faults.items()))
