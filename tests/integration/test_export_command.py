@@ -164,6 +164,7 @@ def refusal(file: Path, out: Path, attempt: int | None = None, kind: Format = Fo
     return str(caught.value)
 
 
+@pytest.mark.slow
 def test_an_attempt_that_is_not_there_is_refused_with_those_that_are(tmp_path: Path) -> None:
     assert "has no attempt 3; it has 1-2" in refusal(with_attempts(tmp_path / "a"), tmp_path / "out", 3)
     without = recorded(tmp_path / "b", list(log_of(WHOLE.track, BEGIN_NS)))

@@ -20,6 +20,8 @@ from services.lesson.imports import c3d as c3d_reading
 from services.lesson.imports import trc as trc_reading
 from tests.takes import FRAME_S, moving
 
+pytestmark = pytest.mark.slow
+
 TEXT_M = 1e-5
 FLOAT_M = 1e-6
 READERS = {trc: trc_reading.decode, c3d: c3d_reading.decode, bvh: bvh_reading.decode}
