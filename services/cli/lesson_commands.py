@@ -1,4 +1,4 @@
-"""The commands about lessons: record, replay, export, lessons. As in `main`, each imports what it needs when it runs."""
+"""The commands about lessons: record, replay, export, report, lessons. As in `main`, each imports what it needs when it runs."""
 
 import os
 from pathlib import Path
@@ -15,6 +15,10 @@ LessonSite = Annotated[
 ]
 DataFolder = Annotated[Path, typer.Option("--data", help="The data folder, in which lessons are kept.", file_okay=False)]
 
+ReportSite = Annotated[
+    Path | None, typer.Option("--site", help="The site file to go by, in the place of the lesson's own.", dir_okay=False)
+]
+
 lessons_app = typer.Typer(help="List what was recorded, or remove some of it.")
 
 
@@ -23,6 +27,7 @@ def add_to(app: typer.Typer) -> None:
     app.command()(record)
     app.command()(replay)
     app.command()(export)
+    app.command()(report)
     app.add_typer(lessons_app, name="lessons")
 
 
@@ -99,6 +104,28 @@ def export(
     from services.cli.export import export as write  # noqa: PLC0415
 
     write(lessons.find(lesson, lessons.folder_of(data, site)), data, site, Order(kind, out, attempt, pupil))
+
+
+def report(
+    lesson: Annotated[str, typer.Argument(help="A lesson's name, as 'kinebox lessons' lists it, or a file.")],
+    form: Annotated[str, typer.Option("--format", help="html to print, csv for the gradebook, json for programs.")] = "html",
+    out: Annotated[Path | None, typer.Option(help="The file to write; stdout if left out.")] = None,
+    language: Annotated[str | None, typer.Option(help="en, zh, de or es; the site's if left out.")] = None,
+    pupil: Annotated[str | None, typer.Option(help="Only the attempts of this code; - for those of nobody.")] = None,
+    again: Annotated[
+        bool, typer.Option("--again", help="Evaluate the recorded motion anew, by what is taught today.", show_default=False)
+    ] = False,
+    data: DataFolder = Path("build"),
+    site: ReportSite = None,
+) -> None:
+    """Report a lesson's attempts: a page to print, a table, or JSON."""
+    from services.support.environment import process_environment  # noqa: PLC0415
+
+    os.environ.update(process_environment(data))  # before numpy and numba are imported
+    from services.cli import lessons  # noqa: PLC0415
+    from services.cli.report import Order, write_report  # noqa: PLC0415
+
+    write_report(lessons.find(lesson, lessons.folder_of(data, site)), data, site, Order(form, language, pupil, again), out)
 
 
 @lessons_app.callback(invoke_without_command=True)

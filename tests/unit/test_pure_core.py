@@ -29,10 +29,14 @@ TYPES_ONLY = {
     "models/process.py": {"threading"},
     "models/body/file.py": {"io"},
     "models/teaching/standard.py": {"io"},
+    "services/evaluation/report/csv_file.py": {"datetime", "io"},
+    "services/evaluation/report/page.py": {"datetime"},
+    "services/evaluation/report/sheet.py": {"datetime"},
     "services/lesson/export/c3d.py": {"io"},
     "services/lesson/imports/c3d.py": {"io"},
 }
-"""What does not reach the world: annotations, and `io.BytesIO`, by which libraries read and write bytes that were given."""
+"""What does not reach the world: annotations; `io.BytesIO` and `io.StringIO`, by which libraries read and write what was given; and
+dates that were given."""
 
 
 def pure_files() -> list[Path]:

@@ -35,7 +35,7 @@ def encode(sheet: Sheet) -> bytes:
         f"<title>{escaped(f'{words.report}: {title}')}</title>",
         f"<style>{STYLE}</style>",
         "</head>",
-        f'<body><svg width="0" height="0" style="position:absolute" aria-hidden="true">{PATTERNS}</svg>{body}</body>',
+        f'<body><svg width="0" height="0" style="position:absolute" aria-hidden="true">{PATTERNS}</svg><main>{body}</main></body>',
         "</html>",
     )
     return ("\n".join(lines) + "\n").encode()

@@ -61,5 +61,6 @@ def _point(x: float, attempt: Attempt, name: str, radius: float) -> Iterator[str
     y = _height(attempt.score)
     ends = [_height(attempt.score + way * attempt.score_sigma) for way in (-1, 1)]
     yield svg.line((x, ends[0]), (x, ends[1]), "whisker")
+    yield from (svg.line((x - radius / 2, end), (x + radius / 2, end), "whisker") for end in ends)
     yield svg.element("circle", cx=x, cy=y, r=radius, class_="score")
     yield svg.text((x, y + 0.85), name, "letter", "middle")

@@ -51,12 +51,10 @@ def view_of(joints_m: Float, handed: Handed, apart_m: Float | None = None) -> Vi
     """
     ahead = _ahead(joints_m)
     left = np.cross(_UP, ahead)
-    shown = joints_m - root_m(joints_m)[:, None]
-    shown = shown - _mean(shown)
-    more = _ASIDE
-    if apart_m is not None and np.isfinite(apart_m).any():
-        shown, more = apart_m, 1.0
-    if _size(shown @ left) > more * _size(shown @ ahead):
+    about_hips = joints_m - root_m(joints_m)[:, None]
+    moved = about_hips - _mean(about_hips)
+    moves_aside = _size(moved @ left) > _ASIDE * _size(moved @ ahead)
+    if moves_aside or (apart_m is not None and _size(apart_m @ left) > _size(apart_m @ ahead)):
         return View(np.cross(_UP, ahead), ahead, "front")
     towards = -left if handed == "right" else left
     return View(np.cross(_UP, towards), towards, "side")

@@ -1,0 +1,232 @@
+"""The page to print holds everything itself, says nothing that nobody knows, and lets nobody write into it."""
+
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from typing import get_args
+
+import msgspec
+import numpy as np
+import pytest
+
+from models.messages.feedback import Colour, MeasureResult
+from models.teaching.schema import Language
+from services.evaluation.report import page
+from services.evaluation.report.curve import curves_of
+from services.evaluation.report.figures import figures
+from services.evaluation.report.sheet import Tried, sheet_of
+from services.evaluation.report.words import ANGLES, WORDS, Words
+from services.evaluation.signals.catalogue import CATALOGUE
+from tests.reported import FACTS, attempt, sheet
+from tests.taught import shipped
+
+VOID = {"meta", "link", "br", "img"}
+ACTIONS = sorted(shipped().teachings)
+
+
+class Reader(HTMLParser):
+    """What a browser would make of it."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.open: list[str] = []
+        self.words: list[str] = []
+        self.feed(html)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if "style" not in self.open:
+            self.words.append(data)
+
+    @property
+    def text(self) -> str:
+        return " ".join(" ".join(self.words).replace("\u00a0", " ").split())
+
+
+def html(*attempts: object, language: Language = "en") -> str:
+    return page.encode(sheet(*attempts, language=language)).decode()  # type: ignore[arg-type]
+
+
+def test_it_loads_nothing_and_runs_nothing() -> None:
+    source = html(attempt(), attempt("squat"))
+    reader = Reader(source)
+    assert reader.open == []
+    assert {tag for tag, _ in reader.tags} & {"script", "link", "img", "iframe", "object", "image", "use", "foreignobject"} == set()
+    named = {name for _, attributes in reader.tags for name in attributes}
+    assert named & {"src", "href", "xlink:href", "onload", "onclick", "srcset", "data"} == set()
+    assert re.findall(r"url\((?!#)", source) == []
+    assert "@import" not in source
+    assert "//" not in source.replace("<!doctype html>", "")
+    (policy,) = [attributes["content"] for _, attributes in reader.tags if "http-equiv" in attributes]
+    assert policy == "default-src 'none'; style-src 'unsafe-inline'"
+
+
+def test_patterns_that_it_paints_with_are_in_it() -> None:
+    source = html(attempt())
+    assert set(re.findall(r"url\(#(\w+)\)", source)) <= set(re.findall(r'<pattern id="(\w+)"', source))
+
+
+def test_nobody_writes_into_it() -> None:
+    evil = '"><script>alert(1)</script><b x="'
+    facts = replace(FACTS, title=evil, name=evil)
+    source = page.encode(sheet_of(facts, [Tried(attempt(), evil)], shipped().teachings, "en")).decode()
+    assert "<script" not in source
+    assert {tag for tag, _ in Reader(source).tags} >= {"article", "svg"}
+    assert evil in Reader(source).text
+
+
+def test_an_attempt_shows_its_score_words_and_measures_each_with_its_sigma() -> None:
+    measures = (
+        MeasureResult("knee_bend", 34.2, 4.1, "deg", "poor", 45, 90),
+        MeasureResult("hand_height", 13.52, 0.86, "pct", "good", 9, 22),
+    )
+    said = attempt(cue="no_knee_bend", cue_certainty=0.9, praise="elbow_out", score=80.7, score_sigma=2.6)
+    told = msgspec.structs.replace(said, measures=measures, shown=("knee_bend", "hand_height"))
+    text = Reader(html(told)).text
+    taught = shipped().teachings["basketball_shot"]
+    faults = {fault.name: fault for fault in taught.fault}
+    assert "Score 81 ± 3" in text
+    assert "34 ± 4°" in text
+    assert "13.5 ± 0.9 %" in text
+    assert text.index(faults["elbow_out"].praise.en) < text.rindex(faults["no_knee_bend"].cue.en)
+    assert "Nothing to correct" not in text
+
+
+def test_numbers_are_written_as_the_language_does() -> None:
+    measures = (MeasureResult("knee_bend", -13.52, 0.86, "deg", "poor", 45, 90.5),)
+    told = attempt(measures=measures, shown=("knee_bend",))
+    assert "\u221213,5 ± 0,9°" in Reader(html(told, language="de")).text
+    assert "\u221213.5 ± 0.9°" in Reader(html(told, language="zh")).text
+
+
+def test_what_is_not_known_is_said_and_no_number_stands_there() -> None:
+    measures = (MeasureResult("knee_bend", None, None, "deg", "unknown", 45, 90),)
+    told = attempt(measures=measures, shown=("knee_bend",), score=None, score_sigma=None, cue="", cue_certainty=0.0, praise="")
+    text = Reader(html(told)).text
+    assert "Score: not known" in text
+    assert "not known good: 45 … 90°" in text.replace("\u2009", " ")
+    assert "Not seen well enough to judge" in text
+    assert "Good " not in text.split("Attempt 1")[1].split("Seen from")[0]
+    assert " 0 ± " not in text
+
+
+def test_silence_is_not_praise() -> None:
+    text = Reader(html(attempt(cue="", cue_certainty=0.0, praise="", score=90.0, score_sigma=3.0))).text
+    assert "Nothing to correct this time" in text
+    assert "✓ Good" not in text.split("Attempt 1")[1].split("Seen from")[0]
+
+
+def test_each_pupil_has_a_sheet_of_his_own_on_which_nobody_else_is() -> None:
+    source = html((attempt(), "P12"), (attempt("squat"), "P07"), attempt())
+    sections = re.findall(r"<section>.*?</section>", source, re.DOTALL)
+    assert len(sections) == 3
+    assert [("P07" in one, "P12" in one) for one in sections] == [(True, False), (False, True), (False, False)]
+
+
+def drawn(told: object, class_: str) -> int:
+    source = figures(told, WORDS["en"], "")  # type: ignore[arg-type]
+    return len(re.findall(rf'class="{class_} edge"', source))
+
+
+def test_a_figure_is_painted_as_its_joints_are_judged() -> None:
+    told = attempt()
+    for colour, class_ in ((Colour.GREEN, "good"), (Colour.YELLOW, "near"), (Colour.RED, "off")):
+        painted = attempt(colours=np.full_like(told.colours, colour))
+        assert drawn(painted, class_) > 40
+        assert sum(drawn(painted, other) for other in {"good", "near", "off", "unsure"} - {class_}) == 0
+
+
+def test_what_was_guessed_is_hollow_and_what_is_unknown_is_not_drawn() -> None:
+    whole = attempt()
+    guessed = attempt(guessed=("left_knee",))
+    assert drawn(whole, "unsure") == 0
+    # The halves of thigh and shank at the knee, at each of the four keyframes.
+    assert drawn(guessed, "unsure") == 8
+    hidden = attempt(hidden=("left_knee",))
+    assert drawn(hidden, "unsure") == 0
+    parts = [sum(drawn(one, class_) for class_ in ("good", "near", "off")) for one in (whole, hidden)]
+    assert parts[0] - parts[1] == 16
+
+
+def test_somebody_who_was_not_seen_at_all_is_a_question_mark_and_no_figure() -> None:
+    told = attempt()
+    nothing = np.zeros_like(told.states)
+    nobody = attempt(states=nothing, colours=nothing, standard_m=np.full_like(told.standard_m, np.nan))
+    source = figures(nobody, WORDS["en"], "")
+    assert source.count(">?</text>") == 4
+    assert "edge" not in source
+    assert "shadow" not in source
+    assert "NaN" not in html(nobody)
+    assert "nan" not in html(nobody)
+
+
+@pytest.mark.parametrize("action", ACTIONS)
+@pytest.mark.parametrize("handed", ["right", "left"])
+def test_every_action_is_drawn_within_its_paper(action: str, handed: str) -> None:
+    told = attempt(action, handed=handed)  # type: ignore[arg-type]
+    tags = Reader(figures(told, WORDS["en"], "")).tags
+    width, height = (float(str(tags[0][1][name]).removesuffix("mm")) for name in ("width", "height"))
+    shapes = [attributes["points"] for tag, attributes in tags if tag in {"polyline", "polygon"}]
+    assert len(shapes) > 80
+    for shape in shapes:
+        points = np.array([pair.split(",") for pair in str(shape).split()], np.float64)
+        assert (points >= 0).all()
+        assert (points <= (width, height)).all()
+    assert len(curves_of(told, shipped().teachings[action])) == 2
+
+
+def test_curves_are_of_what_the_cue_is_about() -> None:
+    told = attempt(cue="no_knee_bend", cue_certainty=0.9, praise="")
+    first = curves_of(told, shipped().teachings["basketball_shot"])[0]
+    assert first.signal == "knee_flexion"
+
+
+def test_the_pupils_curve_lies_in_the_band_when_he_does_as_the_model() -> None:
+    told = attempt("squat", exemplar=0, cue="", cue_certainty=0.0)
+    for curve in curves_of(told, shipped().teachings["squat"]):
+        low, high = curve.band_deg
+        known = np.isfinite(curve.pupil_deg)
+        assert known.mean() > 0.9
+        inside = (curve.pupil_deg >= low - curve.sigma_deg) & (curve.pupil_deg <= high + curve.sigma_deg)
+        assert inside[known].mean() > 0.95
+        assert 0 < curve.sigma_deg < 15
+
+
+def test_an_angle_that_was_not_seen_has_no_curve() -> None:
+    legs = tuple(f"{side}_{joint}" for side in ("left", "right") for joint in ("knee", "ankle"))
+    told = attempt("squat", hidden=legs)
+    assert all("knee" not in curve.signal for curve in curves_of(told, shipped().teachings["squat"]))
+    assert all("knee" not in curve.signal for curve in curves_of(told, None))
+
+
+@pytest.mark.parametrize("language", get_args(Language))
+def test_every_word_is_there_in_every_language(language: Language) -> None:
+    words, english = WORDS[language], WORDS["en"]
+    assert set(WORDS) == set(get_args(Language))
+    for name in Words.__dataclass_fields__:
+        said, original = getattr(words, name), getattr(english, name)
+        assert type(said) is type(original)
+        if isinstance(said, dict):
+            assert said.keys() == original.keys()
+            assert all(said.values())
+        else:
+            assert said
+            assert set(re.findall(r"\{\w+\}", str(said))) == set(re.findall(r"\{\w+\}", str(original)))
+
+
+def test_every_angle_has_a_name_in_every_language() -> None:
+    angles = {signal.name for signal in CATALOGUE.values() if signal.unit == "deg"}
+    assert {name: set(ANGLES.get(name, {})) for name in angles} == {name: set(get_args(Language)) for name in angles}
+    assert ANGLES.keys() <= angles
