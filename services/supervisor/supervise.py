@@ -16,7 +16,7 @@ from models.config.site import Site
 from models.errors import USER_ERROR_CODE, UserError
 from models.messages.health import State, SupervisorHealth
 from models.messages.trouble import Trouble
-from models.process import EDGE, RECORDER, REPLAY, ROUTER, Check, Playback
+from models.process import EDGE, EVALUATION, RECORDER, REPLAY, ROUTER, Check, Playback
 from services.logs.files import STARTED, log_folder
 from services.supervisor import page, start_order
 from services.supervisor.bus_link import BusLink
@@ -72,9 +72,9 @@ def supervise(site_file: Path, data: Path, checks: Iterable[Check], playback: Pl
 def posts_of(site: Site, playback: Playback | None = None) -> list[Post]:
     """What has to run for a site, or for a replay in it; the router first, since all others wait for it."""
     if playback is not None:
-        return [Post(ChildSpec(REPLAY, playback=playback)), Post(ChildSpec("tablet", playback=playback))]
+        return [Post(ChildSpec(entry, playback=playback)) for entry in (REPLAY, "tablet", EVALUATION)]
     cameras = [ChildSpec(EDGE, camera.name) for camera in site.cameras]
-    return [Post(spec) for spec in (ChildSpec(ROUTER), *cameras, ChildSpec("tablet"), ChildSpec(RECORDER))]
+    return [Post(spec) for spec in (ChildSpec(ROUTER), *cameras, *map(ChildSpec, ("tablet", EVALUATION, RECORDER)))]
 
 
 class Supervisor:

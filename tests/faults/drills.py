@@ -337,7 +337,7 @@ def _collect(heard: Any, samples: dict[str, bytes]) -> int:
     return len(samples)
 
 
-PROCESSES = ("fusion", "tablet", f"edge-{VICTIM}", "recorder")
+PROCESSES = ("fusion", "tablet", f"edge-{VICTIM}", "evaluation", "recorder")
 DRILLS: dict[str, Callable[[Stage], Outcome]] = {
     **{
         process_drill_name(name, number): process_drill(name, number)

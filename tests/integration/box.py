@@ -17,12 +17,13 @@ from tests.integration.waiting import free_port, until
 from tests.lifeline import bound
 
 ROOT = Path(__file__).parents[2]
-NAMES = ("fusion", "edge-a", "edge-b", "tablet", "recorder")
+NAMES = ("fusion", "edge-a", "edge-b", "tablet", "evaluation", "recorder")
 
 ENTRY_POINTS = """
 [kinebox.processes]
 fusion = tests.integration.fake_parts:fusion
 edge = {edge}
+evaluation = tests.integration.fake_parts:evaluation
 tablet = {tablet}
 recorder = tests.integration.fake_parts:recorder
 [kinebox.checks]

@@ -39,6 +39,10 @@ def tablet(context: ProcessContext) -> None:
         _report_until_stopped(context, server)
 
 
+def evaluation(context: ProcessContext) -> None:
+    _report_until_stopped(context)
+
+
 def recorder(context: ProcessContext) -> None:
     _report_until_stopped(context)
 

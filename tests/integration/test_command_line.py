@@ -89,7 +89,7 @@ def test_an_old_site_file_is_refused_with_the_command_that_mends_it(site: Path) 
 @pytest.mark.parametrize(
     ("words", "line"),
     [
-        (("cook",), "no process is called 'cook' (there are: edge, fusion, recorder, replay, tablet)"),
+        (("cook",), "no process is called 'cook' (there are: edge, evaluation, fusion, recorder, replay, tablet)"),
         (("edge", "--camera", "zzz"), "camera 'zzz' is not in "),
         (("edge",), "process 'edge' serves one camera; name it with --camera (a, b)"),
         (("fusion", "--camera", "a"), "process 'fusion' serves no camera of its own; leave out --camera"),

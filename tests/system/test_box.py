@@ -30,8 +30,8 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(240)]
 SHIPPED = ROOT / "deploy/sites/footage"
 STARTING_S = 120.0
 """A machine that has never compiled the kernels compiles them now."""
-POSTS = 7
-"""Fusion, four cameras, the page and the recorder."""
+POSTS = 8
+"""Fusion, four cameras, the page, the evaluation and the recorder."""
 
 
 @dataclass
