@@ -11,6 +11,7 @@ from edge.cameras.shape import VideoShape, read_avi_shape, require_calibrated_si
 from edge.footage.index import Index, remedy
 from edge.perception.network_file import read_network_file
 from edge.simulation.lesson.files import film_path
+from edge.simulation.lesson.lesson_rig import require_rig_of_lesson
 from edge.simulation.lesson.plan import read_plan
 from models.camera.rig import Rig
 from models.config.site import CameraConfig, Site
@@ -40,12 +41,21 @@ def check(site: Site, rig: Rig, data: Path) -> None:
         require_calibrated_size(camera.name, shape, rig.cameras[rig.index(camera.name)].size_px)
         videos[camera.name] = (shape, rate_hz)
     require_equal_lengths(videos)
+    for folder, names in lessons_of(site, data):
+        require_rig_of_lesson(folder, read_plan(folder, names[0]), rig.select(names))
     if site.inference.provider == "openvino" and find_spec("openvino") is None:
         raise UserError(
             'inference.provider = "openvino", but OpenVINO is not installed; install the extra of that name or set it to "cpu"'
         )
     for name in NETWORKS:
         read_network_file(name, data)
+
+
+def lessons_of(site: Site, data: Path) -> list[tuple[Path, list[str]]]:
+    """The folders of simulated lessons that a site plays, and its cameras that play each."""
+    cameras = [camera for camera in site.cameras if camera.kind == "simulated"]
+    paths = sorted({camera.path for camera in cameras})
+    return [(data / path, [camera.name for camera in cameras if camera.path == path]) for path in paths]
 
 
 def film_of(camera: CameraConfig, data: Path) -> tuple[Path, float]:

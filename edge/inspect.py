@@ -9,11 +9,13 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from edge.cameras.shape import VideoShape, require_calibrated_size, require_equal_lengths
-from edge.check import NETWORKS, check_video, film_of
+from edge.check import NETWORKS, check_video, film_of, lessons_of
 from edge.footage.index import INDEX_NAME, Index, remedy
 from edge.perception.network_file import read_network_file
 from edge.simulation.lesson.files import FOLDER as LESSONS
 from edge.simulation.lesson.files import SHIPPED
+from edge.simulation.lesson.lesson_rig import require_rig_of_lesson
+from edge.simulation.lesson.plan import read_plan
 from models.camera.rig import Rig
 from models.config.site import CameraConfig, Site
 from models.errors import UserError
@@ -36,6 +38,7 @@ def inspect(site: Site | None, rig: Rig | None, data: Path) -> list[Inspected]:
         videos: dict[str, tuple[VideoShape, float]] = {}
         found += [_camera(camera, rig, data, videos) for camera in site.cameras]
         found += _lengths(videos)
+        found += _rigs(site, rig, data)
         found += _provider(site)
     return found
 
@@ -80,6 +83,17 @@ def _lengths(videos: dict[str, tuple[VideoShape, float]]) -> list[Inspected]:
     if len(videos) < 2:
         return []
     return [_inspected("length of the videos", "counting their pictures", lambda: require_equal_lengths(videos))]
+
+
+def _rigs(site: Site, rig: Rig | None, data: Path) -> Iterator[Inspected]:
+    if rig is None:
+        return
+    for folder, names in lessons_of(site, data):
+
+        def look(folder: Path = folder, names: list[str] = names) -> None:
+            require_rig_of_lesson(folder, read_plan(folder, names[0]), rig.select(names))
+
+        yield _inspected(f"calibration of lesson {folder.name}", "comparing it with the cameras that filmed", look)
 
 
 def _provider(site: Site) -> list[Inspected]:

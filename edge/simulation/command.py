@@ -6,11 +6,11 @@ from pathlib import Path
 
 from msgspec import UNSET
 
+from edge.simulation.lesson.cameras import rig_of
 from edge.simulation.lesson.files import SITE_NAME
 from edge.simulation.lesson.plan import Plan, decode_plan
 from edge.simulation.lesson.plan_check import require_sound
 from edge.simulation.lesson.presets import PRESETS
-from edge.simulation.lesson.stage import rig_of
 from edge.simulation.rendering.render_lesson import folder_of, render_lesson
 from models.commands import LessonPlan, Progress, RenderedLesson
 from models.errors import UserError

@@ -17,9 +17,9 @@ from typing import Final
 import msgspec
 import psutil
 
+from edge.simulation.lesson.cameras import rig_of
 from edge.simulation.lesson.plan import encode_plan
 from edge.simulation.lesson.presets import six_actions
-from edge.simulation.lesson.stage import rig_of
 from edge.simulation.lesson.world_faults import picture_count
 from tests.bench.report import Report
 from tests.installed import ROOT

@@ -2,9 +2,10 @@
 
 import pytest
 
+from edge.simulation.lesson.cameras import rig_of
 from edge.simulation.lesson.presets import SIX_ACTIONS, acceptance
 from edge.simulation.lesson.programme import programme_of
-from edge.simulation.lesson.stage import member_of, rig_of
+from edge.simulation.lesson.stage import member_of
 from tests.bench.seeds import seeds_of
 
 

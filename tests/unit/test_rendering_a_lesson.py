@@ -13,10 +13,11 @@ import pytest
 
 from edge.footage.index import INDEX_NAME, Index
 from edge.footage.transcode import encode_jpeg
+from edge.simulation.lesson.cameras import rig_of
 from edge.simulation.lesson.files import PLAN_NAME, TRUTH_NAME, film_path
 from edge.simulation.lesson.plan import BumpPlan, LightPlan, Plan
 from edge.simulation.lesson.presets import tiny
-from edge.simulation.lesson.stage import Stage, rig_of
+from edge.simulation.lesson.stage import Stage
 from edge.simulation.picture.scene import Scene
 from edge.simulation.picture.shutter import Shutter
 from edge.simulation.rendering import render_lesson as rendering

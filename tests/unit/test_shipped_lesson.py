@@ -10,11 +10,11 @@ import pytest
 from edge.cameras.video import load_video
 from edge.footage.transcode import write_motion_jpeg
 from edge.simulation.lesson.attempts import read_attempts
+from edge.simulation.lesson.cameras import rig_of
 from edge.simulation.lesson.files import ATTEMPTS_NAME, FOLDER, SHIPPED, TRUTH_NAME, VIDEO_SUFFIX
 from edge.simulation.lesson.plan import read_plan
 from edge.simulation.lesson.plan_check import require_sound
 from edge.simulation.lesson.presets import SIX_ACTIONS, six_actions
-from edge.simulation.lesson.stage import rig_of
 from edge.simulation.rendering.film import sensor_of
 from edge.simulation.rendering.render_lesson import JPEG_QUALITY
 from edge.simulation.shipped.install import SOURCE, cameras

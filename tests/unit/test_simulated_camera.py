@@ -1,18 +1,24 @@
 """A rendered lesson plays as it was recorded: its times, its faults, and over and over."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
+import cv2
+import msgspec
+import numpy as np
 import pytest
 
 from edge.cameras.simulated import Recorded, open_simulated
 from edge.cameras.source import Frame
 from edge.check import check
 from edge.inspect import inspect
+from edge.simulation.lesson.cameras import rig_of
 from edge.simulation.lesson.files import PLAN_NAME, film_path
+from edge.simulation.lesson.lesson_rig import require_rig_of_lesson
 from edge.simulation.lesson.plan import Plan, ShutterPlan, SwapPlan
-from edge.simulation.lesson.stage import rig_of
 from edge.simulation.lesson.world_faults import phase_s
+from models.camera.rig import Rig
 from models.config.site import SITE_VERSION, CameraConfig, FaultConfig, Site, decode_site
 from models.errors import UserError
 from tests.lesson_folder import CAMERAS, PICTURES, draw_lesson, plan_with
@@ -123,6 +129,45 @@ def test_a_film_that_is_shown_only_after_a_swap_is_looked_for_before_anything_is
     film_path(folder, "cam03").unlink()
     with pytest.raises(UserError, match=r"camera 'cam01': .*cam03\.avi is missing"):
         check(site_of("cam01", "cam02"), rig_of(plan_with(size_px=SIZE_PX)), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("other", "said"),
+    [
+        (
+            {"rig": "row"},
+            r"^camera 'cam01' would see .* as wide.*: the site's calibration is of .*drawn; set `calibration` in the site file",
+        ),
+        ({"seed": 1}, r"^camera.* 'cam0[12]'.*: the site's calibration is of other cameras"),
+    ],
+)
+def test_a_calibration_of_another_rig_is_refused_though_its_pictures_have_the_same_size(
+    other: dict[str, object], said: str, tmp_path: Path
+) -> None:
+    plan = plan_with(size_px=SIZE_PX)
+    draw_lesson(tmp_path / "simulated/drawn", plan)
+    foreign = msgspec.structs.replace(plan, **other)
+    with pytest.raises(UserError, match=said) as refused:
+        check(site_of("cam01", "cam02"), rig_of(foreign), tmp_path)
+    assert "\n" not in str(refused.value)
+    faults = [found.fault for found in inspect(site_of("cam01", "cam02"), rig_of(foreign), tmp_path)]
+    assert str(refused.value) in faults
+    assert str(refused.value) not in [found.fault for found in inspect(site_of("cam01", "cam02"), rig_of(plan), tmp_path)]
+
+
+def test_a_lesson_may_be_calibrated_anew_in_a_world_of_its_own(tmp_path: Path) -> None:
+    plan = plan_with(size_px=SIZE_PX)
+    turned, moved_m = cv2.Rodrigues(np.array((0.3, -0.2, 2.0)))[0], np.array((4.0, -3.0, 1.0))
+    anew = [
+        replace(
+            camera, rotation=camera.rotation @ turned.T, translation_m=camera.translation_m - camera.rotation @ turned.T @ moved_m
+        )
+        for camera in rig_of(plan)
+    ]
+    anew[1] = replace(
+        anew[1], translation_m=anew[1].translation_m + 0.1, matrix_px=anew[1].matrix_px * np.array((1.03, 1.03, 1))[:, None]
+    )
+    require_rig_of_lesson(tmp_path, plan, Rig(tuple(anew)))
 
 
 def test_a_simulated_camera_has_its_rate_from_its_lesson() -> None:

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from edge.simulation.lesson.cameras import rig_of
 from edge.simulation.lesson.plan import BumpPlan, ExposurePlan, LightPlan, ShutterPlan, SwapPlan
-from edge.simulation.lesson.stage import rig_of
 from edge.simulation.lesson.world_faults import (
     camera_at,
     delivery_faults,

@@ -5,8 +5,8 @@ from itertools import pairwise
 
 from msgspec import UNSET
 
+from edge.simulation.lesson.cameras import rig_of
 from edge.simulation.lesson.plan import Plan
-from edge.simulation.lesson.stage import rig_of
 from models.errors import UserError
 from models.motions.perform import action_of
 

@@ -14,7 +14,7 @@ _ROOT = Path(__file__).parents[3]
 _CODE = ("edge/simulation", "models/body", "models/camera", "models/motions", "models/skeleton")
 _FILES = ("edge/footage/transcode.py", "models/compiled.py")
 _DATA = ("models/body/data", "models/motions/data")
-_NO_PICTURES = {"command.py", "presets.py", "recipe.py", "render_lesson.py", "strip.py", "workers.py"}
+_NO_PICTURES = {"command.py", "lesson_rig.py", "presets.py", "recipe.py", "render_lesson.py", "strip.py", "workers.py"}
 _NOT_RUN = {"build", "recorded", "shipped"}
 
 
