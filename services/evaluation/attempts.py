@@ -49,7 +49,7 @@ class FindingConfig:
 
     distance: float = 0.57
     tempo: tuple[float, float] = (0.55, 1.8)
-    wait_s: float = 0.27
+    wait_s: float = 0.37
     patience_s: float = 1.5
     under_way: float = 0.35
     better: float = 0.8

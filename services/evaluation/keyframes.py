@@ -23,7 +23,7 @@ from services.evaluation.normalise import lead_right, placed, placing_of, size_m
 from services.evaluation.track import Track
 
 BEFORE_S: Final = 0.4
-AFTER_S: Final = 0.3
+AFTER_S: Final = 0.37
 """Keyframes are looked for in so much more of the motion before and after an attempt."""
 _BAND: Final = 0.35
 _WINDOWS_S: Final = ((-0.15, 0.3), (-0.2, 0.2), (-0.2, 0.2), (-0.47, 0.14))

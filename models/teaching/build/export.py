@@ -55,7 +55,7 @@ _LEFT_HIP, _RIGHT_HIP = coco.INDEX["left_hip"], coco.INDEX["right_hip"]
 
 
 @dataclass(frozen=True, eq=False)
-class _Sampled:
+class Sampled:
     """A performance in the canonical frame.
 
     Attributes:
@@ -90,9 +90,9 @@ def main() -> int:
 
 def standard_of(action: str) -> Standard:
     """The standard of an action, performed anew."""
-    main_one = _performed(Performance(action), _YEARS)
+    main_one = performed(Performance(action), _YEARS)
     exemplars = [
-        _performed(Performance(action, tempo=tempo, amplitude=amplitude, skill=skill, seed=number), years).exemplar
+        performed(Performance(action, tempo=tempo, amplitude=amplitude, skill=skill, seed=number), years).exemplar
         for number, (years, tempo, amplitude, skill) in enumerate(_EXEMPLARS)
     ]
     random = np.random.default_rng(0x600D)
@@ -100,7 +100,7 @@ def standard_of(action: str) -> Standard:
     for number in range(_GOOD):
         tempo, amplitude, skill = (float(random.uniform(*bounds)) for bounds in (_TEMPO, _AMPLITUDE, _SKILL))
         how = Performance(action, tempo=tempo, amplitude=amplitude, skill=skill, seed=1000 + number)
-        good.append(_performed(how, _GOOD_YEARS[number % len(_GOOD_YEARS)]))
+        good.append(performed(how, _GOOD_YEARS[number % len(_GOOD_YEARS)]))
     spread = _spread_m(main_one, good)
     return Standard(action, _VERSION, _ORIGIN, main_one.exemplar, spread, main_one.stature_m, tuple(exemplars))
 
@@ -120,9 +120,10 @@ def _subject(years: float) -> Subject:
     return Subject(model.shaped(model.prior.likely(years, sex).mean), years, sex)
 
 
-def _performed(how: Performance, years: float) -> _Sampled:
+def performed(how: Performance, years: float) -> Sampled:
+    """A performance by a pupil of mean build and this age."""
     subject = _subject(years)
-    return _Sampled(_cut(perform(how, subject), subject), subject.body.stature_m)
+    return Sampled(_cut(perform(how, subject), subject), subject.body.stature_m)
 
 
 def _cut(motion: Motion, subject: Subject) -> Exemplar:
@@ -143,7 +144,7 @@ def _middle(joints_m: Float) -> Float:
     return np.asarray((joints_m[:, _LEFT_HIP] + joints_m[:, _RIGHT_HIP]) / 2 * np.array((1.0, 1.0, 0.0)))
 
 
-def _spread_m(standard: _Sampled, good: Sequence[_Sampled]) -> Float:
+def _spread_m(standard: Sampled, good: Sequence[Sampled]) -> Float:
     """(S, 17) see `Standard.spread_m`; performances are aligned by their keyframes, which are known, evenly in between."""
     ours = _centred(standard.exemplar)
     times_s = np.arange(len(ours), dtype=np.float64) * FRAME_S

@@ -25,6 +25,8 @@ _ROUNDED_S: Final = 1e-6
 _OVERLAP: Final = 0.5
 """An attempt is found if what is common to it and the true one is at least this share of both together."""
 _AROUND_S: Final = 0.1
+SETTLED_S: Final = 0.65
+"""An attempt is to be decided on so soon after its true end."""
 
 
 @cache
@@ -79,7 +81,12 @@ class Found:
 
 
 def find(track: Track, true: Sequence[Attempt]) -> Found:
-    """Feed a track of a whole lesson to the finder, frame by frame, all actions being looked for."""
+    """Feed a track of a whole lesson to the finder, frame by frame, all actions being looked for.
+
+    A lesson that is over before its last attempt could be decided on ends where that attempt begins.
+    """
+    if true and true[-1].end_s > track.t_s[-1] - SETTLED_S:
+        return find(track.part(0, int(track.frame_at(true[-1].start_s))), true[:-1])
     finder = AttemptFinder(shipped(), track.frame_s)
     decided = []
     for t_s, joints in zip(track.t_s.tolist(), track.joints_m, strict=True):
