@@ -17,6 +17,7 @@ from services.evaluation.report.figures import figures
 from services.evaluation.report.sheet import Tried, sheet_of
 from services.evaluation.report.words import ANGLES, WORDS, Words
 from services.evaluation.signals.catalogue import CATALOGUE
+from tests.installed import ROOT
 from tests.reported import FACTS, attempt, sheet
 from tests.taught import shipped
 
@@ -101,7 +102,7 @@ def test_an_attempt_shows_its_score_words_and_measures_each_with_its_sigma() -> 
     assert "34 ± 4°" in text
     assert "13.5 ± 0.9 %" in text
     assert text.index(faults["elbow_out"].praise.en) < text.rindex(faults["no_knee_bend"].cue.en)
-    assert "Nothing to correct" not in text
+    assert WORDS["en"].fine not in text
 
 
 def test_numbers_are_written_as_the_language_does() -> None:
@@ -124,7 +125,7 @@ def test_what_is_not_known_is_said_and_no_number_stands_there() -> None:
 
 def test_silence_is_not_praise() -> None:
     text = Reader(html(attempt(cue="", cue_certainty=0.0, praise="", score=90.0, score_sigma=3.0))).text
-    assert "Nothing to correct this time" in text
+    assert WORDS["en"].fine in text
     assert "✓ Good" not in text.split("Attempt 1")[1].split("Seen from")[0]
 
 
@@ -230,3 +231,19 @@ def test_every_angle_has_a_name_in_every_language() -> None:
     angles = {signal.name for signal in CATALOGUE.values() if signal.unit == "deg"}
     assert {name: set(ANGLES.get(name, {})) for name in angles} == {name: set(get_args(Language)) for name in angles}
     assert ANGLES.keys() <= angles
+
+
+@pytest.mark.parametrize("language", get_args(Language))
+def test_paper_and_tablet_call_the_same_by_the_same_words(language: Language) -> None:
+    words = WORDS[language]
+    tablet = (ROOT / f"services/tablet/web/src/text/{language}.ts").read_text()
+    said = [
+        *words.verdicts.values(),
+        *words.colours.values(),
+        *words.phases,
+        words.model,
+        words.fine,
+        words.unseen,
+        words.next_time,
+    ]
+    assert [one for one in (*said, words.score, words.action) if f"'{one}'" not in tablet] == []
