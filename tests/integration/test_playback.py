@@ -11,6 +11,7 @@ import pytest
 from models.config.site import SITE_VERSION, CameraConfig, Site
 from models.errors import UserError
 from models.messages import codec, topics
+from models.messages.feedback import ActivityRequest
 from models.messages.health import Health
 from models.messages.motion import Motion
 from models.process import Playback, ProcessContext, Resources, Subscription
@@ -60,6 +61,8 @@ class Played:
         self._bus = router.open()
         self._motions: Subscription = self._bus.subscribe(topics.motion("live"), topics.motion("smooth"), keep=10_000)
         self._healths: Subscription = self._bus.subscribe(topics.ALL_HEALTH, keep=10_000)
+        self._wishes: Subscription = self._bus.subscribe(topics.activity_request(), keep=10_000)
+        self.asked: list[str] = []
         self.live: list[Motion] = []
         self.smooth: list[Motion] = []
         self.healths: list[Health] = []
@@ -68,9 +71,15 @@ class Played:
         while (delivery := self._motions.receive(0.0)) is not None:
             motion = codec.decode(delivery.payload, Motion)
             (self.live if motion.kind == "live" else self.smooth).append(motion)
+        while (delivery := self._wishes.receive(0.0)) is not None:
+            self.asked.append(codec.decode(delivery.payload, ActivityRequest).activity)
         while (delivery := self._healths.receive(0.0)) is not None:
             self.healths.append(codec.decode(delivery.payload, Health))
         return self
+
+    def evaluation_comes(self) -> None:
+        """As when its process joins the bus, or comes back."""
+        self._bus.declare_alive(topics.alive("evaluation"))
 
 
 @contextmanager
@@ -132,6 +141,16 @@ def test_cameras_and_fusion_say_again_what_they_said_and_others_of_that_day_do_n
     told = [health.replay for health in played.healths if health.replay is not None]
     assert all(0 <= replay.position_s <= replay.length_s + 0.1 for replay in told)
     assert all(replay.length_s == pytest.approx(3.0, abs=0.2) for replay in told)
+
+
+@pytest.mark.slow
+def test_the_evaluation_is_told_what_pupils_were_to_do_once_and_again_when_it_comes_later(lesson: Path) -> None:
+    with playing(lesson, loop=False, speed=1.0) as (played, thread):
+        until(lambda: played.collect().asked == ["long_jump"], "what pupils were to do")
+        played.evaluation_comes()
+        until(lambda: played.collect().asked == ["long_jump", "long_jump"], "the same for who came later")
+        thread.join(DEADLINE_S)
+    assert played.collect().asked == ["long_jump", "long_jump"], "between two changes whoever watches may choose otherwise"
 
 
 @pytest.mark.slow

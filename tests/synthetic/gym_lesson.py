@@ -7,7 +7,7 @@ from pathlib import Path
 from models.camera.rig import encode_rig
 from models.config.site import SITE_VERSION, CameraConfig, Site
 from models.messages import codec
-from models.messages.health import CameraHealth, FusionHealth, Health
+from models.messages.health import CameraHealth, EvaluationHealth, FusionHealth, Health
 from models.messages.lesson import Entry
 from models.messages.trouble import Trouble
 from services.lesson import origin
@@ -64,6 +64,8 @@ def _healths(gym: Gym, t_ns: int) -> Iterator[Health]:
         rates = CameraHealth(name, 30.0, 14.0, 15.0, 0, 20.0, "thunder", {})
         yield Health(f"edge-{name}", 4000, t_ns, "ok", (), 0.3, 200.0, camera=rates)
     yield Health("fusion", 4001, t_ns, "ok", (), 0.2, 150.0, fusion=FusionHealth(30.0, 4.0, 0.5, 0, {}, "found"))
+    evaluation = EvaluationHealth("long_jump", "tablet", "waiting", 3, 0.2, 30.0, 0, 0)
+    yield Health("evaluation", 4003, t_ns, "ok", (), 0.2, 150.0, evaluation=evaluation)
     yield Health("tablet", 4002, t_ns, "failed", (Trouble("given_up", "of another day"),), 0.2, 150.0)
 
 
