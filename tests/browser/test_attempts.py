@@ -227,6 +227,27 @@ def test_the_scrubber_goes_to_keyframes_and_to_any_moment_by_key(tablet: Page, r
     expect(scrubber).to_have_attribute("aria-valuetext", re.compile(r"^0\.0 of \d\.\d seconds$"))
 
 
+def test_a_replay_at_rest_draws_nothing_while_the_pupil_goes_on(tablet: Page, room: Room) -> None:
+    shown = open_live(tablet, room)
+    see(shown, room, tried(SHOT, FAULT))
+    tablet.get_by_role("button", name="Peak", exact=True).click()
+    tablet.wait_for_timeout(800)
+    drawn = shown.number("drawn")
+    tablet.wait_for_timeout(1500)
+    assert shown.number("drawn") - drawn <= 2
+    assert shown.number("figures") > 0
+    expect(tablet.locator(".page")).to_have_attribute("data-phase", "live")
+
+
+def test_a_school_s_language_is_spoken_to_a_tablet_of_another_one(browser: Browser, room: Room) -> None:
+    page = browser.new_page(viewport={"width": 1024, "height": 768}, locale="fr-FR")
+    words = page.request.get(f"{room.page}api/teaching").json()
+    page.route("**/api/teaching", lambda route: route.fulfill(json={**words, "languages": ["es", "en", "zh", "de"]}))
+    page.goto(room.page)
+    expect(page.locator("html")).to_have_attribute("lang", "es", timeout=60_000)
+    page.close()
+
+
 def test_the_standard_is_on_top_beside_or_away_and_all_in_a_mirror(tablet: Page, room: Room) -> None:
     shown = open_live(tablet, room)
     see(shown, room, tried("cartwheel", "bent_legs"))

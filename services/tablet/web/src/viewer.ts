@@ -11,6 +11,7 @@ import type { Lesson } from './state/lesson.svelte';
 import type { Room } from './state/room.svelte';
 import { Search } from './state/search';
 import { Stage } from './stage/stage';
+import { suggest } from './text/words.svelte';
 
 /** Words change at most so often: nobody can read faster. */
 const WORDS_PERIOD_MS = 250;
@@ -63,6 +64,8 @@ export class Viewer {
       attempt: (attempt) => this.note(attempt),
       changed: () => this.changed(),
     });
+    // Who turns the view looks at the replay.
+    canvas.addEventListener('pointerdown', () => this.replays.touch());
     this.link.start();
     this.words = setInterval(() => this.turnComes(), WORDS_PERIOD_MS);
   }
@@ -123,7 +126,9 @@ export class Viewer {
   private async learnWords(): Promise<void> {
     try {
       const response = await fetch('/api/teaching');
-      if (response.ok) this.lesson.teaching = (await response.json()) as Teaching;
+      if (!response.ok) return;
+      this.lesson.teaching = (await response.json()) as Teaching;
+      suggest(this.lesson.teaching.languages[0]);
     } catch {
       // Asked again with the next connection.
     }
@@ -150,8 +155,13 @@ export class Viewer {
       if (!(error instanceof MotionFrameError)) throw error;
       this.room.unreadable += 1;
     }
-    if (this.waiting === null) this.acknowledge();
-    else this.stage.requestDraw();
+    if (this.waiting !== null && !this.replays.onStage) {
+      this.stage.requestDraw();
+      return;
+    }
+    // A replay has the stage, and is drawn when it moves.
+    if (this.replays.onStage) this.takeNewest();
+    this.acknowledge();
   }
 
   /** A frame waits to be drawn, in the place of an older one, unless it was under way for too long. */

@@ -61,7 +61,7 @@ describe('the language', () => {
   it('is the first of those wished for that the page speaks', () => {
     expect(spoken(['de-AT', 'en'])).toBe('de');
     expect(spoken(['fr', 'zh-Hant-TW'])).toBe('zh');
-    expect(spoken(['fr-FR'])).toBe('en');
-    expect(spoken([])).toBe('en');
+    expect(spoken(['fr-FR'])).toBeNull();
+    expect(spoken([])).toBeNull();
   });
 });

@@ -86,7 +86,16 @@ export function attemptView(framed: Framed, target: Vector3, camera: Perspective
 
 /** Where the light comes from, seen from the pupil: over the right shoulder of the one who looks from the first view. */
 export function lightOffset(pose: Pose): Vector3 {
-  return around(facingRad(pose) + AZIMUTH_OFFSET_RAD + LIGHT_AZIMUTH_RAD, LIGHT_ELEVATION_RAD, LIGHT_DISTANCE_M);
+  return lightFrom(facingRad(pose) + AZIMUTH_OFFSET_RAD);
+}
+
+/** The same for an attempt: the light comes from where it is looked at, so that no colour lies in the dark. */
+export function attemptLight({ facing, handed }: Framed): Vector3 {
+  return lightFrom(facing + (handed === 'right' ? -ATTEMPT_OFFSET_RAD : ATTEMPT_OFFSET_RAD));
+}
+
+function lightFrom(viewRad: number): Vector3 {
+  return around(viewRad + LIGHT_AZIMUTH_RAD, LIGHT_ELEVATION_RAD, LIGHT_DISTANCE_M);
 }
 
 function around(azimuth: number, elevation: number, distance: number): Vector3 {

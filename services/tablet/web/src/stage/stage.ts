@@ -8,6 +8,7 @@ import { Floor } from './floor';
 import {
   BESIDE_M,
   attemptDistanceM,
+  attemptLight,
   attemptView,
   facingRad,
   firstDistanceM,
@@ -44,7 +45,7 @@ export class Stage {
   /** Made when the first replay is shown. */
   private standard: Figure | null = null;
   /** How an attempt is looked at, and how the live figure was before; null while the figure is live. */
-  private attempt: (Framed & { before: View }) | null = null;
+  private attempt: (Framed & { before: View; lightBefore: Vector3 }) | null = null;
   private pair = false;
   private leapt = false;
   private readonly wish = wishedQuality(location.href);
@@ -98,7 +99,9 @@ export class Stage {
   beginAttempt(pose: Pose, seen: Omit<Framed, 'facing'>, pair: boolean): void {
     this.figure.forgetSize();
     this.standard?.forgetSize();
-    this.attempt = { ...seen, facing: facingRad(pose), before: this.attempt?.before ?? this.orbit.view };
+    const { before, lightBefore } = this.attempt ?? { before: this.orbit.view, lightBefore: this.lightOffset };
+    this.attempt = { ...seen, facing: facingRad(pose), before, lightBefore };
+    this.lightOffset = attemptLight(this.attempt);
     this.pose = pose;
     this.orbit.touched = false;
     this.frameAttempt(pair, false);
@@ -128,8 +131,9 @@ export class Stage {
   /** The live figure is shown again, from where it was looked at before. */
   endAttempt(): void {
     if (this.attempt === null) return;
-    const { before } = this.attempt;
+    const { before, lightBefore } = this.attempt;
     this.attempt = null;
+    this.lightOffset = lightBefore;
     this.pair = false;
     this.figure.forgetSize();
     this.showStandard(null, false);

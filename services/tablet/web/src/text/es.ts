@@ -39,7 +39,7 @@ const phases: Words['phases'] = {
     title: 'Esta tableta no puede dibujar en 3D',
     words: 'Su navegador no tiene WebGL 2. Actualícelo o use otra tableta.',
   },
-  live: { pill: 'En vivo', title: '', words: '' },
+  live: { pill: 'En directo', title: '', words: '' },
 };
 
 const f = formats('es-ES');
@@ -118,7 +118,7 @@ export const es: Words = {
     title: 'Cámara lenta',
     loading: 'La repetición está en camino',
     missing: 'La repetición de este intento ya no existe',
-    back: 'Volver a en vivo',
+    back: 'Volver al directo',
     play: 'Reproducir',
     pause: 'Pausa',
     position: 'Momento del intento',
