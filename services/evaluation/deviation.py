@@ -109,7 +109,8 @@ def _least(values: Float, rows: Counts, count: int) -> tuple[Float, Counts]:
 def _sigma_m(aligned: AlignedTrack, track: Track, towards: Float, model: Uncertainty) -> Float:
     """(T, 17) standard deviation of the distance along (T, 17, 3) unit vectors in the standard's frame."""
     turn = aligned.placing.matrix
-    joints = model.noise_scale**2 * track.covariance_m2 + np.square(model.landmark_m)[:, None, None] * np.eye(3)
+    scales, landmarks = np.square(model.noise_scale)[:, None, None], np.square(model.landmark_m)[:, None, None]
+    joints = scales * track.covariance_m2 + landmarks * np.eye(3)
     hips = joints[:, _HIPS].sum(axis=1) / 4 * np.outer((1, 1, 0), (1, 1, 0))
     # The middle of the hips is above the origin: its error moves all joints, but the hips themselves by half of it less.
     covariance = turn @ (joints + hips[:, None]) @ turn.T

@@ -4,12 +4,19 @@ The error of a joint has two parts. The *noise* is what fusion's covariance tell
 to the next and forgets it within some frames. The *landmark* part is where the pose network puts a joint on the body, against where
 the joint is: fusion cannot know of it, all cameras share it, and it changes only as the pose and the views do, over a second or so.
 Both are taken as normal, with a correlation over time that falls as exp(-(dt / time)^2 / 2): so that a difference over few frames,
-a speed or a range is not charged with what both its ends share.
+a speed or a range is not charged with what both its ends share. Of what moves fast the noise is larger along its way: shutters
+and the smoother put it some milliseconds beside its time.
 
-The numbers were found on development pupils, `make bench-measures ARGS=--calibrate`: 68 % of errors within one sigma.
+Neighbours on the body are wrong in the same way, the more the nearer they are: hips are shifted together, an elbow takes its wrist
+along. So errors of joints are alike by exp(-distance / length) of where they are in the T-pose; that makes a trunk less sure, and
+an angle surer, than independent joints would.
+
+The numbers were found on development pupils through the twin and fusion, from medians: so that 68 % of errors lie within one
+sigma, whatever the rest does. `make bench-measures` counts.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -25,20 +32,22 @@ class Uncertainty:
     Attributes:
         landmark_m: (17) standard deviation, along each axis, of where each joint is taken to be on the body.
         landmark_s: time after which a landmark's error has mostly become another one.
-        noise_scale: by which fusion's standard deviations are multiplied.
+        noise_scale: (17) by which fusion's standard deviations are multiplied.
         noise_s: the same time for the noise.
+        timing_s: by how much time a joint that moves is ahead of or behind its place, along its way: shutters, and the smoother.
         moment_s: standard deviation of a keyframe's instant.
     """
 
     landmark_m: tuple[float, ...]
     landmark_s: float
-    noise_scale: float
+    noise_scale: tuple[float, ...]
     noise_s: float
+    timing_s: float
     moment_s: float
 
     def __post_init__(self) -> None:
-        if len(self.landmark_m) != coco.COUNT:
-            raise ValueError(f"there are {coco.COUNT} joints, not {len(self.landmark_m)}")
+        if {len(self.landmark_m), len(self.noise_scale)} != {coco.COUNT}:
+            raise ValueError(f"there are {coco.COUNT} joints, not {len(self.landmark_m)} and {len(self.noise_scale)}")
 
     def alike(self, t_s: Float) -> tuple[Float, Float]:
         """(T, T) correlations of noise and of landmark errors between instants."""
@@ -46,11 +55,54 @@ class Uncertainty:
         noise, landmark = (np.exp(-((apart / time_s) ** 2) / 2) for time_s in (self.noise_s, self.landmark_s))
         return noise, landmark
 
+    @cached_property
+    def mixed(self) -> Float:
+        """(17, 17) what each joint has of each of 17 independent errors of size 1."""
+        places = np.array([_T_POSE[name] for name in coco.NAMES])
+        apart = np.linalg.norm(places[:, None] - places[None, :], axis=2)
+        return np.linalg.cholesky(np.exp(-apart / _ALIKE))
 
-_MM: Final = {"nose": 3, "eye": 3, "ear": 5, "shoulder": 9.5, "elbow": 5, "wrist": 6, "hip": 12, "knee": 12, "ankle": 8}
-NETWORK: Final = Uncertainty(tuple(_MM[name.split("_")[-1]] / 1000 for name in coco.NAMES), 0.5, 1.0, 0.08, 0.02)
+
+_ALIKE: Final = 0.17
+"""Of the stature: joints so far apart share a third of their errors."""
+_SIDED: Final = {
+    "eye": (0.02, 0.93),
+    "ear": (0.045, 0.92),
+    "shoulder": (0.11, 0.81),
+    "elbow": (0.28, 0.81),
+    "wrist": (0.43, 0.81),
+    "hip": (0.07, 0.52),
+    "knee": (0.12, 0.28),
+    "ankle": (0.15, 0.05),
+}
+_T_POSE: Final = {"nose": (0.0, 0.90)} | {
+    f"{side}_{part}": (sign * aside, high) for part, (aside, high) in _SIDED.items() for side, sign in (("left", 1), ("right", -1))
+}
+"""To the left and up, of the stature; legs a little apart."""
+
+_MM_AND_SCALE: Final = {
+    "nose": (7.0, 0.9),
+    "eye": (7.0, 0.9),
+    "ear": (8.5, 1.0),
+    "shoulder": (6.0, 1.35),
+    "elbow": (6.3, 1.5),
+    "wrist": (4.5, 0.9),
+    "hip": (10.5, 1.8),
+    "knee": (6.5, 1.4),
+    "ankle": (6.5, 0.85),
+}
+"""Of each joint: landmark error, millimetres, and noise over what fusion says of it."""
+_OF_JOINTS: Final = [_MM_AND_SCALE[name.split("_")[-1]] for name in coco.NAMES]
+NETWORK: Final = Uncertainty(
+    landmark_m=tuple(mm / 1000 for mm, _ in _OF_JOINTS),
+    landmark_s=0.8,
+    noise_scale=tuple(scale for _, scale in _OF_JOINTS),
+    noise_s=0.06,
+    timing_s=0.005,
+    moment_s=0.02,
+)
 """Of what the box reconstructs."""
-EXACT: Final = Uncertainty((0.0,) * coco.COUNT, 1.0, 1.0, 0.08, 0.0)
+EXACT: Final = Uncertainty((0.0,) * coco.COUNT, 1.0, (1.0,) * coco.COUNT, 0.06, 0.0, 0.0)
 """Of truth, and of standards: joints are where they are said to be, within the track's own covariance."""
 
 

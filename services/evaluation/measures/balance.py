@@ -37,7 +37,7 @@ def _sway(reading: Reading, attempt: FoundAttempt) -> Estimate:
         weights[:, frames] = centred
         noise += float(np.mean([series.variance(row) for row in weights]))
     sway = math.sqrt(max(square - noise, 0.0))
-    return Estimate(sway, math.sqrt(noise / 2) if sway**2 > noise else math.sqrt(noise), bool(axes[0].seen[frames].mean() >= 0.7))
+    return Estimate(sway, math.sqrt(noise / 2) if sway**2 > noise else math.sqrt(noise), axes[0].enough_seen(frames))
 
 
 _FEWEST: Final = 5
@@ -54,7 +54,7 @@ def _offset(reading: Reading, attempt: FoundAttempt) -> Estimate:
     sigmas = [math.sqrt(series.variance(weights)) for series in (ahead, aside)]
     away = math.hypot(*means)
     sigma = math.hypot(means[0] * sigmas[0], means[1] * sigmas[1]) / away if away > max(sigmas) else max(sigmas)
-    return Estimate(away, sigma, bool(ahead.seen[frames].mean() >= 0.7))
+    return Estimate(away, sigma, ahead.enough_seen(frames))
 
 
 def _steady(reading: Reading, attempt: FoundAttempt) -> Estimate:
@@ -65,7 +65,7 @@ def _steady(reading: Reading, attempt: FoundAttempt) -> Estimate:
         return unknown(HIDDEN)
     fast = after[speed.value[after] > _STEADY_M_S]
     if len(fast) == 0:
-        return Estimate(0.0, reading.model.moment_s, bool(speed.seen[after].mean() >= 0.7))
+        return Estimate(0.0, reading.model.moment_s, speed.enough_seen(after))
     last = int(fast[-1])
     if last + 1 >= len(speed) or last == after[-1]:
         return unknown("still moved at the end")
@@ -73,7 +73,7 @@ def _steady(reading: Reading, attempt: FoundAttempt) -> Estimate:
     share = (float(speed.value[last]) - _STEADY_M_S) / slows
     sigma_s = float(speed.sigma[last]) / slows * speed.frame_s
     at_s = float(speed.t_s[last]) + share * speed.frame_s
-    return Estimate(at_s - peak_s, math.hypot(sigma_s, reading.model.moment_s), bool(speed.seen[after].mean() >= 0.7))
+    return Estimate(at_s - peak_s, math.hypot(sigma_s, reading.model.moment_s), speed.enough_seen(after))
 
 
 FUNCTIONS = (

@@ -33,8 +33,8 @@ _HEELS_ON_PCT: Final = 1.0
 """Of the stature, by which the ankles have risen when the toes leave the floor; when the balls of the feet, or the heels, land."""
 _HEELS_FROM_PCT, _HEELS_AT_PCT = 8.0, 20.0
 """Ankles so far in front of the hips begin to mean, and mean, that the heels land first."""
-MOMENT_SIGMA_S: Final = 0.009
-"""Of take-off and of landing, from what people differ in: 0.7 % of the stature at the speed of a take-off."""
+MOMENT_SIGMA_S: Final = 0.013
+"""Of take-off and of landing: what people differ in, 0.7 % of the stature, at the speed of a take-off, and the smoother."""
 _SHORTEST_S: Final = 0.12
 _FLAT_QUANTILE: Final = 0.1
 _MARGIN_S: Final = 0.25
@@ -148,7 +148,7 @@ def _fitted(
     ankle_cm = 100 * max(reading.model.landmark_m[15:17])
     sigma_s = math.hypot(MOMENT_SIGMA_S, ankle_cm / max(abs(float(up_cm_s)) + 50 * GRAVITY_M_S2 * (on_s - off_s), 50.0))
     top_cm = float(height_cm) + 50 * GRAVITY_M_S2 * later_s**2
-    seen = bool(np.mean(series[2].seen[inside]) >= 0.7)
+    seen = series[2].enough_seen(inside)
     return Flight(off_s, on_s, ons, offs, middle_s + later_s, top_cm, speeds, flats, sigma_s, seen)
 
 

@@ -15,12 +15,10 @@ from services.evaluation.measures.catalogue import FUNCTIONS
 from services.evaluation.measures.measured import HIDDEN, OUTSIDE, Measured
 from services.evaluation.signals.catalogue import CATALOGUE
 from services.evaluation.signals.reading import Reading
-from services.evaluation.signals.series import Series
+from services.evaluation.signals.series import SEEN_SHARE, Series
 from services.evaluation.signals.signal import Unit
 from services.evaluation.signals.stretch import Sample, sample, stretch, summed, top, top_sigma_s
 
-SEEN_SHARE: Final = 0.7
-"""Of the frames of a stretch so many must have been seen for its extremes and mean to be known."""
 _ENDS: Final = 8
 """So many frames are in a difference of two instants; more are in a mean."""
 
@@ -40,7 +38,7 @@ def evaluate(measure: Measure, reading: Reading, attempt: FoundAttempt) -> Measu
         function = FUNCTIONS[measure.function]
         found = function.call(reading, attempt)
         known = found.seen and math.isfinite(found.value) and math.isfinite(found.sigma)
-        return Measured(function.name, found.value, found.sigma, function.unit, known, found.why)
+        return Measured(function.name, found.value, found.sigma, function.unit, known, found.why or ("" if known else HIDDEN))
     if measure.signal is UNSET:
         raise ValueError("a measure has a signal or a function")
     signal = CATALOGUE[measure.signal]
@@ -133,4 +131,4 @@ def _seen(series: Series, samples: list[Sample], weights: Float | None) -> bool:
     frames = [min(max(round(one.place), 0), len(series) - 1) for one in samples]
     used = series.seen[weights != 0] if weights is not None else np.ones(1, np.bool_)
     many = np.count_nonzero(used) >= SEEN_SHARE * len(used) if len(used) > _ENDS else used.all()
-    return bool(many and np.mean(series.seen[frames]) >= SEEN_SHARE)
+    return bool(many) and series.enough_seen(np.array(frames))

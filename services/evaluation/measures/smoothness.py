@@ -18,6 +18,8 @@ _HIGHEST_HZ: Final = 10.0
 _AMPLITUDE: Final = 0.05
 _PADDING: Final = 4
 _FEWEST: Final = 8
+_SMOOTHER: Final = {"spectral_arc_length": 0.1, "log_dimensionless_jerk": 0.4}
+"""What fusion's smoother adds to smoothness, standard deviation: it cannot know which jerk was the pupil's."""
 _DRAWS: Final = 12
 """Realisations of the noise from which a sigma is told; the same ones each time."""
 
@@ -61,7 +63,9 @@ def _of(signal: str, by: Callable[[Float, float], float]) -> Callable[[Reading, 
         rate_hz = 1 / series.frame_s
         value = by(speed, rate_hz)
         draws = [by(speed + noise, rate_hz) for noise in _noises(series, inside)]
-        return Estimate(value, float(np.sqrt(np.mean((np.array(draws) - value) ** 2))), bool(series.seen[inside].mean() >= 0.7))
+        own = _SMOOTHER[by.__name__] if series.model.timing_s else 0.0
+        sigma = math.hypot(float(np.std(draws)), own)
+        return Estimate(value, sigma, series.enough_seen(inside))
 
     return call
 

@@ -34,7 +34,7 @@ def _difference(signal: str) -> Callable[[Reading, FoundAttempt], Estimate]:
         if not known.any():
             return unknown(HIDDEN)
         weights = known / np.count_nonzero(known)
-        seen = bool(np.mean(series.seen[inside]) >= 0.7)
+        seen = series.enough_seen(inside)
         return Estimate(float(series.value[known].mean()), math.sqrt(series.variance(weights)), seen)
 
     return call
@@ -51,7 +51,7 @@ def _index(signal: str) -> Callable[[Reading, FoundAttempt], Estimate]:
         if whole < 2 * _LEAST_RANGE_DEG:
             return unknown(f"both sides move by less than {_LEAST_RANGE_DEG:g} degrees")
         sigma = 400 / whole**2 * math.hypot(other * lead_sigma, lead * other_sigma)
-        seen = all(np.mean(series.seen[_within(series, attempt)]) >= 0.7 for series in sides)
+        seen = all(series.enough_seen(_within(series, attempt)) for series in sides)
         return Estimate(200 * (lead - other) / whole, sigma, seen)
 
     return call

@@ -3,8 +3,6 @@
 import math
 from typing import Final
 
-import numpy as np
-
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.measures.flight import COM_CM
 from services.evaluation.measures.measured import HIDDEN, Estimate, Function, unknown
@@ -54,7 +52,7 @@ def _rise(reading: Reading, attempt: FoundAttempt) -> Estimate:
 
 def _seen(series: Series, attempt: FoundAttempt) -> bool:
     inside = (series.t_s >= attempt.moments_s[0]) & (series.t_s <= attempt.moments_s[-1])
-    return bool(np.mean(series.seen[inside]) >= 0.7)
+    return series.enough_seen(inside)
 
 
 def _hips_then_wrist(reading: Reading, attempt: FoundAttempt) -> Estimate:

@@ -10,9 +10,13 @@ from services.evaluation.signals.series import Series
 from services.evaluation.signals.signal import Signal
 from services.evaluation.track import Track
 
-CATALOGUE: Final[dict[str, Signal]] = {
-    signal.name: signal for signal in (*angles.SIGNALS, *trunk.SIGNALS, *places.SIGNALS, *feet.SIGNALS, *movement.SIGNALS)
+FAMILIES: Final[dict[str, tuple[Signal, ...]]] = {
+    "Joint angles": angles.SIGNALS,
+    "Trunk": trunk.SIGNALS,
+    "Heights, reaches and distances": (*places.SIGNALS, *feet.SIGNALS),
+    "Speeds and accelerations": movement.SIGNALS,
 }
+CATALOGUE: Final[dict[str, Signal]] = {signal.name: signal for family in FAMILIES.values() for signal in family}
 
 
 def of(name: str, track: Track, side: SideAsked, lead: Handed) -> Series:

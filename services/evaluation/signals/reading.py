@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from models.arrays import Float
+from models.arrays import Bool, Float
 from models.motions.motion import Handed
 from models.skeleton import coco
 from services.evaluation.signals.mass import masses_of
@@ -21,6 +21,8 @@ from services.evaluation.uncertainty import NETWORK, Uncertainty, roots
 _STEP: Final = 0.005
 """Metres (per second, per second squared) over which a formula's slope is taken: as far as joints are off. A derivative at the
 point itself would be none where a straight knee bends either way."""
+_UNSEEN_PART: Final = 0.08
+"""Of the sum of squared slopes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +71,10 @@ class Reading:
 
     @cached_property
     def _roots_m(self) -> Float:
-        """(T, 17, 3, 3) of the joints' covariance."""
-        return self.model.noise_scale * roots(self.track.covariance_m2)
+        """(T, 17, 3, 3) of the joints' covariance, with what lies along their way."""
+        late_m = self.model.timing_s * np.nan_to_num(self._derivatives[1])
+        scale = np.array(self.model.noise_scale)[:, None, None]
+        return roots(scale**2 * self.track.covariance_m2 + late_m[..., :, None] * late_m[..., None, :])
 
     @cached_property
     def _derivatives(self) -> tuple[Float, Float, Float]:
@@ -108,11 +112,12 @@ class Reading:
         order = signal.order
         noise[:, used] = _rate_share(model.noise_s, order) * np.einsum("tji,tjia->tja", slopes, self._roots_m[:, used])
         lasting[:, used] = _rate_share(model.landmark_s, order) * slopes * np.array(model.landmark_m)[used, None]
+        noise, lasting = (np.einsum("tja,jm->tma", factors, model.mixed) for factors in (noise, lasting))
         lastings = np.zeros((count, LASTINGS))
         lastings[:, :NOISES] = lasting.reshape(count, NOISES)
         if signal.unit == "pct":
             lastings[:, NOISES] = -value * self.stature.sigma_m / self.stature.metres
-        seen = self.track.seen[:, used].all(axis=1) & np.isfinite(value)
+        seen = _seen(slopes, self.track.seen[:, used]) & np.isfinite(value)
         series = Series(signal.unit, self.track.t_s, value, noise.reshape(count, NOISES), lastings, seen, model)
         return self._rate(series, signal) if signal.rate_of else series
 
@@ -130,18 +135,29 @@ class Reading:
 
 
 def _slopes(formula: Callable[[Callable[[int], Float]], Float], points: Float, used: list[int], value: Float, turns: bool) -> Float:
-    """(T, J, 3) by how much the value grows a metre of each axis of each joint that is used."""
-    rows = 3 * len(used)
+    """(T, J, 3) by how much the value grows a metre of each axis of each joint that is used.
+
+    Root mean square of what a step forwards and one backwards change: at a bend, where they cancel, either still counts.
+    """
+    rows = 6 * len(used)
     moved = {}
     for place, joint in enumerate(used):
         many = np.repeat(points[None, :, joint], rows, axis=0)
         for axis in range(3):
-            many[3 * place + axis, :, axis] += _STEP
+            many[6 * place + axis, :, axis] += _STEP
+            many[6 * place + 3 + axis, :, axis] -= _STEP
         moved[joint] = many
     change = formula(moved.__getitem__) - value
     if turns:
         change = (change + 180) % 360 - 180
-    return np.asarray(change.reshape(len(used), 3, -1).transpose(2, 0, 1) / _STEP)
+    forwards, backwards = change.reshape(len(used), 2, 3, -1).transpose(1, 3, 0, 2) / _STEP
+    return np.asarray(np.copysign(np.sqrt((forwards**2 + backwards**2) / 2), forwards - backwards))
+
+
+def _seen(slopes: Float, seen: Bool) -> Bool:
+    """(T,) whether what was not seen has hardly a part in the value; a wrist in the centre of mass, never a joint of an angle."""
+    parts = (slopes**2).sum(axis=2)
+    return np.asarray((parts * ~seen).sum(axis=1) <= _UNSEEN_PART * parts.sum(axis=1))
 
 
 def _rate_share(time_s: float, order: int) -> float:

@@ -6,11 +6,14 @@ from functools import cached_property
 import numpy as np
 
 from models.arrays import Bool, Float
+from models.compiled import Counts
 from models.skeleton import coco
 from services.evaluation.uncertainty import Uncertainty
 
+SEEN_SHARE = 0.7
+"""Of the frames of a stretch so many must have been seen for what is made of it to be known."""
 NOISES = 3 * coco.COUNT
-"""Columns of `Series.noise`: an independent error of each axis of each joint."""
+"""Columns of `Series.noise`: as many independent errors as joints have axes (`Uncertainty.mixed`)."""
 LASTINGS = NOISES + 1
 """Columns of `Series.lasting`: the same for the landmarks' errors, and the error of the pupil's stature."""
 
@@ -49,6 +52,11 @@ class Series:
     def frame_s(self) -> float:
         """From one frame to the next; 0 for fewer than two."""
         return float(self.t_s[1] - self.t_s[0]) if len(self) > 1 else 0.0
+
+    def enough_seen(self, frames: Bool | Counts) -> bool:
+        """Whether there are such frames, and most of them were seen."""
+        chosen = self.seen[frames]
+        return len(chosen) > 0 and float(np.mean(chosen)) >= SEEN_SHARE
 
     def variance(self, weights: Float) -> float:
         """Of the sum of the values, each times its weight (T,); NaN if one with a weight is unknown."""

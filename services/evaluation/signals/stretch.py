@@ -11,6 +11,10 @@ _BEYOND: float = 0.5
 """Frames beyond the track's ends for which the end still stands."""
 
 
+_ROUNDED: float = 0.6
+"""Frames by which the smoother moves a top."""
+
+
 @dataclass(frozen=True, eq=False)
 class Sample:
     """A series at one instant.
@@ -80,11 +84,15 @@ def top_sigma_s(series: Series, at: Sample) -> float:
     frame = round(at.place)
     if not 0 < frame < len(series) - 1:
         return series.frame_s
+    if at.weights[frame] == 1.0:  # the end of a stretch
+        return series.frame_s / 2
     before, here, after = series.value[frame - 1 : frame + 2]
     weights = np.zeros(len(series))
     weights[[frame - 1, frame + 1]] = (-0.5, 0.5)
     bend = abs(before - 2 * here + after)
-    return float(np.sqrt(series.variance(weights)) / bend * series.frame_s) if bend > 0 else float("nan")
+    if bend == 0:
+        return float("nan")
+    return float(np.hypot(np.sqrt(series.variance(weights)) / bend, _ROUNDED * bool(series.model.timing_s)) * series.frame_s)
 
 
 def summed(values: Float, weights: Float) -> float:

@@ -3,22 +3,22 @@
 import hashlib
 import io
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Final
 
 import msgspec
 import numpy as np
 
+from edge.simulation.lesson.cameras import rig_of
 from edge.simulation.lesson.plan import Plan
 from edge.simulation.lesson.programme import programme_of
-from edge.simulation.lesson.stage import member_of, rig_of
-from models.arrays import Bool, Float
+from edge.simulation.lesson.stage import member_of
+from models.arrays import Float
 from models.messages.motion import Motion as Smooth
 from models.motions.figure import figure_of
 from models.motions.motion import RATE_HZ, Attempt, Motion
 from models.motions.subject import Subject
-from models.skeleton import coco
+from models.skeleton import coco, coco_feet
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.track import Track, track_of
 from services.fusion.config import PRESETS
@@ -59,24 +59,46 @@ class Truth:
         """(T, 17, 3)."""
         return np.stack([self.coco_m(float(one))[: coco.COUNT] for one in t_s])
 
-    @cached_property
-    def centre_m(self) -> Float:
-        """(T, 3) centre of mass at the motion's own rate."""
-        figure = figure_of(self.subject)
-        return figure.centres_of_mass_m(figure.place(self.motion.translations_m, self.motion.rotations_rad))
-
-    @cached_property
-    def in_air(self) -> Bool:
-        """(T,) whether nothing bears, at the motion's own rate."""
-        return np.asarray(~self.motion.contacts.any(axis=1))
-
-    def flight_s(self, attempt: Attempt) -> tuple[float, float] | None:
+    def jump(self, attempt: Attempt) -> "Jump | None":
         """The longest flight of an attempt; None if there is none."""
         first, end = (int(t_s * RATE_HZ) for t_s in (attempt.start_s, attempt.end_s))
-        edges = np.flatnonzero(np.diff(np.concatenate(((0,), self.in_air[first:end].astype(int), (0,)))))
+        in_air = ~self.motion.contacts[first:end].any(axis=1)
+        edges = np.flatnonzero(np.diff(np.concatenate(((0,), in_air.astype(int), (0,)))))
         runs = [(first + a, first + b) for a, b in zip(edges[::2], edges[1::2], strict=True)]
-        longest = max(runs, key=lambda run: run[1] - run[0], default=None)
-        return None if longest is None else (longest[0] / RATE_HZ, longest[1] / RATE_HZ)
+        if not runs:
+            return None
+        off, on = max(runs, key=lambda run: run[1] - run[0])
+        figure, air = figure_of(self.subject), slice(off, on)
+        centre_m = figure.centres_of_mass_m(figure.place(self.motion.translations_m[air], self.motion.rotations_rad[air]))
+        top = int(np.argmax(centre_m[:, 2]))
+        along = (centre_m[-1] - centre_m[0])[:2]
+        far = float(np.linalg.norm(along))
+        return Jump(
+            off / RATE_HZ,
+            on / RATE_HZ,
+            (off + top) / RATE_HZ,
+            float(np.ptp(centre_m[: top + 1, 2])),
+            self._reach_m(off, on, along / far),
+        )
+
+    def _reach_m(self, off: int, on: int, along: Float) -> float:
+        """From the toe that is further in front at take-off to the heel that is further behind at landing."""
+        toes, heels = (
+            [self.coco_m(frame / RATE_HZ)[coco_feet.INDEX[f"{side}_{end}"], :2] @ along for side in ("left", "right")]
+            for frame, end in ((off, "big_toe"), (on, "heel"))
+        )
+        return float(min(heels) - max(toes))
+
+
+@dataclass(frozen=True)
+class Jump:
+    """What is true of a flight: seconds of the lesson; rise of the centre of mass; reach from the toes to the heels."""
+
+    off_s: float
+    on_s: float
+    top_s: float
+    rise_m: float
+    reach_m: float
 
 
 def truth_of(plan: Plan) -> Truth:
