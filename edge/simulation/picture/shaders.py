@@ -4,14 +4,26 @@ from typing import Final
 
 VERSION: Final = "#version 430\n"
 
-LENS: Final = """
+CLIP: Final = """
+uniform vec2 near_far;
+
+// Of column and row, and the depth in metres along the view, in a picture with this first pixel and so many pixels.
+vec4 clip_at(vec2 pixel, float depth, vec2 first, vec2 pixels) {
+    vec2 place = ((pixel + 0.5 - first) / pixels * 2.0 - 1.0) * depth;
+    float n = near_far.x, f = near_far.y;
+    return vec4(place, ((f + n) * depth - 2.0 * f * n) / (f - n), depth);
+}
+"""
+
+LENS: Final = (
+    CLIP
+    + """
 uniform mat3 rotation;
 uniform vec3 translation;
 uniform float focal[5];      // fx, skew, cx, fy, cy
 uniform float distortion[5]; // k1, k2, p1, p2, k3
 uniform float field_limit;
 uniform vec4 window;         // the part of the picture that is drawn: first pixel, number of pixels
-uniform vec2 near_far;
 
 vec2 to_pixel(vec3 local) {
     vec2 n = local.xy / local.z;
@@ -33,11 +45,10 @@ vec4 to_clip(vec3 local) {
     vec2 pixel = local.z >= near_far.x ? to_pixel(local)
         // Behind: without the lens, on the same line through the camera, for the near plane to cut off.
         : vec2(focal[0] * local.x + focal[1] * local.y, focal[3] * local.y) / local.z + vec2(focal[2], focal[4]);
-    vec2 place = ((pixel + 0.5 - window.xy) / window.zw * 2.0 - 1.0) * local.z;
-    float n = near_far.x, f = near_far.y;
-    return vec4(place, ((f + n) * local.z - 2.0 * f * n) / (f - n), local.z);
+    return clip_at(pixel, local.z, window.xy, window.zw);
 }
 """
+)
 
 # As `edge.simulation.picture.lighting` has it for what moves.
 LAMPS: Final = """
@@ -67,13 +78,13 @@ void lighten(vec3 n, vec3 view, out vec3 light, out vec3 shine) {
 # What moves has landed in the picture and was lit before (`edge.simulation.picture.lens.land`, `edge.simulation.picture.lighting`).
 MOVING_VERTEX: Final = (
     VERSION
+    + CLIP
     + """
 layout(location = 0) in vec3 landed; // column and row of pixels, depth in metres
 layout(location = 1) in vec4 outer_light; // with the lamps' highlight
 layout(location = 2) in vec4 inner_light;
 layout(location = 3) in vec2 uv;
 uniform vec2 size;
-uniform vec2 near_far;
 uniform vec2 nudge; // in pixels
 // Slivers along an outline may not cover a pixel's middle: outside of them light would be anything.
 centroid out vec4 outer, inner;
@@ -83,9 +94,7 @@ void main() {
     outer = outer_light;
     inner = inner_light;
     spot = uv;
-    float n = near_far.x, f = near_far.y;
-    vec2 place = (landed.xy + nudge + 0.5) / size * 2.0 - 1.0;
-    gl_Position = vec4(place * landed.z, ((f + n) * landed.z - 2.0 * f * n) / (f - n), landed.z);
+    gl_Position = clip_at(landed.xy + nudge, landed.z, vec2(0.0), size);
 }
 """
 )
@@ -209,11 +218,11 @@ void main() {
 # Each face has three corners of its own here.
 MOVING_TRUTH_VERTEX: Final = (
     VERSION
+    + CLIP
     + """
 layout(location = 0) in vec3 landed;
 layout(location = 1) in vec3 place;
 uniform vec2 size;
-uniform vec2 near_far;
 out vec3 at;
 out vec2 shares;
 flat out float face;
@@ -223,9 +232,7 @@ void main() {
     int corner = gl_VertexID % 3;
     shares = vec2(corner == 1, corner == 2);
     face = float(gl_VertexID / 3);
-    float n = near_far.x, f = near_far.y;
-    vec2 spot = (landed.xy + 0.5) / size * 2.0 - 1.0;
-    gl_Position = vec4(spot * landed.z, ((f + n) * landed.z - 2.0 * f * n) / (f - n), landed.z);
+    gl_Position = clip_at(landed.xy, landed.z, vec2(0.0), size);
 }
 """
 )
