@@ -33,7 +33,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions standards check-standards lock clean distclean test-faults test-mutations test-motions test-rendering bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-simulate bench-networks bench-keyframes twin
+.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions standards check-standards lock clean distclean test-faults test-mutations test-motions test-rendering bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-simulate bench-networks bench-keyframes bench-measures twin
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
@@ -162,6 +162,9 @@ bench-networks: $(VENV)/.ready networks kernels ## How well the pose networks se
 
 bench-keyframes: $(VENV)/.ready kernels ## Attempts and keyframes on true motion and on the twin, and half an hour without one (ARGS=--on true|twin|idle)
 	$(PYTHON) -m tests.bench.teaching.keyframes --data $(DATA) $(ARGS)
+
+bench-measures: $(VENV)/.ready kernels ## Angles, jumps and all else that is measured, against the truth on the twin, and jumps over a force plate (SHARED)
+	$(PYTHON) -m tests.bench.teaching.measures --data $(DATA) --shared $(SHARED) $(ARGS)
 
 twin: $(VENV)/.ready networks kernels ## Fit the twin to rendered lessons anew (the first time they are rendered, which takes hours), and print how far it agrees
 	$(PYTHON) -m tests.bench.twin --data $(DATA) $(ARGS)
