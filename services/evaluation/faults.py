@@ -10,11 +10,11 @@ from services.evaluation.measures.measured import Measured
 from services.evaluation.measures.reduce import evaluate
 from services.evaluation.signals.reading import Reading
 
-LEAST_KNOWN: Final = 0.6
+LEAST_KNOWN: Final = 0.34
 """Share of the evidence, by weight, without which a fault is not judged."""
 ALIKE: Final = 0.5
 """Correlation that is taken for the errors of two measures of one attempt: they share joints, and as often differ."""
-MISSING_SIGMA: Final = 0.5
+MISSING_SIGMA: Final = 0.4
 """What is not known of a severity where a share of its evidence is missing: so much for all of it."""
 _FARTHEST: Final = (-1.0, 2.5)
 """No single measure counts for more than this: what is beyond is a mistake of the measure, or worse than any fault."""
