@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from models.messages.feedback import Colour, MeasureResult
+from models.skeleton import coco
 from models.teaching.schema import Language
 from services.evaluation.report import page
 from services.evaluation.report.curve import curves_of
@@ -186,6 +187,33 @@ def test_every_action_is_drawn_within_its_paper(action: str, handed: str) -> Non
         assert (points >= 0).all()
         assert (points <= (width, height)).all()
     assert len(curves_of(told, shipped().teachings[action])) == 2
+
+
+@pytest.mark.parametrize("action", ACTIONS)
+def test_stars_and_wheels_are_seen_from_the_front_and_all_else_from_the_side(action: str) -> None:
+    source = figures(attempt(action, cue="", cue_certainty=0.0), WORDS["en"], "")
+    front = action in {"star_jump", "cartwheel"}
+    assert (WORDS["en"].seen_from["front"] in source, WORDS["en"].seen_from["side"] in source) == (front, not front)
+
+
+def test_what_was_wrong_aside_is_seen_from_the_front() -> None:
+    told = attempt("squat", cue="knees_in", cue_certainty=0.9, praise="")
+    across = told.standard_m[0, coco.INDEX["left_hip"]] - told.standard_m[0, coco.INDEX["right_hip"]]
+    fallen = told.joints_m.copy()
+    fallen[:, coco.INDEX["left_knee"]] -= 0.8 * across
+    seen = [figures(msgspec.structs.replace(told, joints_m=joints), WORDS["en"], "") for joints in (told.standard_m, fallen)]
+    assert [WORDS["en"].seen_from["front"] in one for one in seen] == [False, True]
+
+
+def test_who_leads_with_the_left_is_seen_from_the_left() -> None:
+    """On paper the nose of who throws with the right is to the right of his head, and the other way round."""
+    for handed, way in (("right", 1), ("left", -1)):
+        told = attempt(handed=handed, cue="", cue_certainty=0.0)  # type: ignore[arg-type]
+        heads = [attributes for tag, attributes in Reader(figures(told, WORDS["en"], "")).tags if tag == "circle"]
+        noses = [float(str(one["cx"])) for one in heads if one["class"] == "nose"]
+        middles = [float(str(one["cx"])) for one in heads if "edge" in str(one["class"])]
+        assert len(noses) == len(middles) == 4
+        assert all(way * (nose - middle) > 0 for nose, middle in zip(noses, middles, strict=True))
 
 
 def test_curves_are_of_what_the_cue_is_about() -> None:

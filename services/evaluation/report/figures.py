@@ -82,10 +82,9 @@ def figures(feedback: Feedback, words: Words, label: str) -> str:
     pupil = np.where((feedback.states != JointState.UNKNOWN)[..., None], feedback.joints_m.astype(np.float64), np.nan)
     standard = feedback.standard_m.astype(np.float64)
     frames = [feedback.frame_of(t_ns) for t_ns in feedback.keyframes_ns]
-    whole = slice(frames[0], frames[-1] + 1)
     shown = standard if np.isfinite(standard).any() else pupil
     # With something to correct, from where the difference shows.
-    view = view_of(shown[whole], feedback.handed, (pupil - standard)[frames[:-1]] if feedback.cue else None)
+    view = view_of(shown[frames], feedback.handed, (pupil - standard)[frames[:-1]] if feedback.cue else None)
     size = next((one for one in map(size_m, (standard, pupil)) if one > 0), _USUAL_SIZE_M)
     scene = [_Moment(pupil[frame], standard[frame], view) for frame in frames]
     scale = _scale([moment.extent_m for moment in scene], size)

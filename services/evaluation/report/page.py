@@ -82,7 +82,7 @@ def _row(place: int, action: ActionSummary, words: Words) -> str:
     if action.cue is None:
         cue = "\u2013"
     else:
-        often = words.of.format(count=action.cue_count, all=action.attempts)
+        often = words.of.format(count=action.cue_count, all=action.attempts).replace(" ", "\u00a0")
         cue = f"{action.cue_text or _plain(action.cue)} ({often})"
     return (
         f'<tr><td><span class="key">{scores.letter(place)}</span>{escaped(action.title or _plain(action.action))}</td>'

@@ -18,6 +18,7 @@ article h2 { margin: 0 }
 table { border-collapse: collapse; width: 100%; margin: 1mm 0 }
 th { text-align: left; font-weight: 600; font-size: 8.5pt; color: #333; border-bottom: .3mm solid #111; padding: .6mm 3mm .6mm 0 }
 td { border-bottom: .2mm solid #bbb; padding: .9mm 3mm .9mm 0; vertical-align: top }
+td:first-child { white-space: nowrap }
 .number { text-align: right; white-space: nowrap }
 .key { display: inline-block; width: 4.2mm; height: 4.2mm; line-height: 4mm; text-align: center; border: .3mm solid #111;
   border-radius: 50%; font-size: 7.5pt; font-weight: 700; margin-right: 1.5mm }

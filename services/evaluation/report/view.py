@@ -14,8 +14,9 @@ from services.evaluation.normalise import facing, root_m
 from services.evaluation.report.words import Seen
 
 _UP: Final = np.array((0.0, 0.0, 1.0))
-_ASIDE: Final = 1.5
-"""Seen from the front is what goes so many times more aside than ahead, as the sum of squares over joints and frames."""
+_ASIDE: Final = 3.0
+"""Seen from the front is what gets so many times more aside than ahead from start to peak, as the joints' sum of squares. Stars and
+wheels do by 80 and more; who turns sideways to hit does by 2, and is seen from the side."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,38 +42,30 @@ class View:
         return np.asarray(places_m @ self.towards)
 
 
-def view_of(joints_m: Float, handed: Handed, apart_m: Float | None = None) -> View:
+def view_of(keyframes_m: Float, handed: Handed, apart_m: Float | None = None) -> View:
     """The view of an attempt.
 
     Args:
-        joints_m: (T, 17, 3) how it should look, in the world, from start to end; NaN where unknown.
+        keyframes_m: (4, 17, 3) how it should look at start, exertion, peak and end, in the world; NaN where unknown.
         handed: the side that leads, which is turned to whoever looks from the side.
         apart_m: (..., 17, 3) how far from there the pupil was, if that is what shall be seen; NaN where unknown.
     """
-    ahead = _ahead(joints_m)
+    ahead = _ahead(keyframes_m)
     left = np.cross(_UP, ahead)
-    about_hips = joints_m - root_m(joints_m)[:, None]
-    moved = about_hips - _mean(about_hips)
-    moves_aside = _size(moved @ left) > _ASIDE * _size(moved @ ahead)
+    start, _, peak, _ = keyframes_m - root_m(keyframes_m)[:, None]
+    moves_aside = _size((peak - start) @ left) > _ASIDE * _size((peak - start) @ ahead)
     if moves_aside or (apart_m is not None and _size(apart_m @ left) > _size(apart_m @ ahead)):
         return View(np.cross(_UP, ahead), ahead, "front")
     towards = -left if handed == "right" else left
     return View(np.cross(_UP, towards), towards, "side")
 
 
-def _ahead(joints_m: Float) -> Float:
-    """(3,) where the pupil faces as he begins, as far as it is known."""
-    faced = facing(joints_m)
+def _ahead(keyframes_m: Float) -> Float:
+    """(3,) where he faces at the first keyframe at which that is known; along x if it is at none."""
+    faced = facing(keyframes_m)
     known = faced[np.isfinite(faced).all(axis=1)]
-    x, y = known[: max(1, len(known) // 5)].sum(axis=0) if len(known) else (1.0, 0.0)
-    size = float(np.hypot(x, y))
-    return np.array((x / size, y / size, 0.0)) if size > 0 else np.array((1.0, 0.0, 0.0))
-
-
-def _mean(places: Float) -> Float:
-    """(17, 3) over the frames where they are known."""
-    known = np.isfinite(places)
-    return np.asarray(np.where(known, places, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1))
+    x, y = known[0] if len(known) else (1.0, 0.0)
+    return np.array((x, y, 0.0))
 
 
 def _size(along: Float) -> float:
