@@ -7,7 +7,7 @@ from pathlib import Path
 import msgspec
 import typer
 
-from models.config.site import BusConfig, Site, TabletConfig, decode_site
+from models.config.site import BusConfig, EvaluationConfig, Site, TabletConfig, decode_site
 from models.errors import UserError
 from models.process import Playback
 from services.cli.check_lesson import what_changed
@@ -49,20 +49,25 @@ def play(file: Path, data: Path, page: TabletConfig, speed: float, *, loop: bool
     playback = Playback(str(file.resolve()), header.title, header.started_ns + header.wall_minus_monotonic_ns, speed, loop)
     with tempfile.TemporaryDirectory(prefix="kinebox-replay-") as folder:
         site_file = Path(folder) / "site.toml"
-        site_file.write_text(render(replay_site(header, page)))
+        site_file.write_text(render(replay_site(header, page, data)))
         (Path(folder) / _CALIBRATION).write_text(header.rig_toml)
         supervise(site_file, data, (), playback)
 
 
-def replay_site(header: LessonHeader, page: TabletConfig) -> Site:
+def replay_site(header: LessonHeader, page: TabletConfig, data: Path) -> Site:
     """The lesson's site with this machine's addresses, and without spares: nobody is hurt by a replay that stops for a second.
+
+    What pupils were to do comes from the lesson's log. What the school taught of its own counts if it is in the data folder.
 
     Raises:
         UserError: this KineBox cannot read it.
     """
     recorded = decode_site(migrated_text(header.site_toml.encode(), "of the lesson").new.encode(), "of the lesson")
+    own = recorded.evaluation.teaching
+    evaluation = EvaluationConfig(language=recorded.evaluation.language, teaching=own if (data / own).is_dir() else "")
     return msgspec.structs.replace(
         recorded,
+        evaluation=evaluation,
         calibration=_CALIBRATION,
         bus=BusConfig(endpoint=f"tcp/{_HERE}:{_free_port()}"),
         tablet=page,

@@ -14,6 +14,8 @@ from contextlib import suppress
 from itertools import chain, islice
 from pathlib import Path
 
+import msgspec
+import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
@@ -22,11 +24,14 @@ from edge.meter import Meter
 from edge.process import Plan
 from edge.turns import default_control
 from models.messages import codec, topics
+from models.messages.feedback import ActivityRequest, Feedback
 from models.messages.lesson import LessonRequest
 from models.messages.motion import JointState, Motion
 from models.process import Delivery, Resources
 from services.bus.mailbox import Mailbox
+from services.evaluation.process import EvaluationLoop
 from services.fusion.process import FusionLoop
+from services.fusion.warm_up import warm_up
 from services.lesson.folder_lock import lock
 from services.lesson.process import RecorderLoop
 from services.support.cpu import CpuMeter
@@ -38,6 +43,7 @@ from tests.integration.waiting import until
 from tests.mutations.consumers import topics_of
 from tests.mutations.feed import COUNTS, GROWTH_MB, FeedBus, Growth, context_of, deliveries
 from tests.mutations.samples import JOINTS_M, RIG, control, healths, log, motion, observation
+from tests.taught import performance, some
 
 
 def filmed(enough: Callable[[], bool]) -> Iterator[Delivery]:
@@ -53,6 +59,7 @@ def filmed(enough: Callable[[], bool]) -> Iterator[Delivery]:
 @pytest.mark.parametrize("count", COUNTS)
 @pytest.mark.parametrize("topic", topics_of("services.fusion.process"))
 def test_fusion_survives_and_then_finds_the_pupil(topic: str, count: int, tmp_path: Path) -> None:
+    warm_up()  # Compiled code is no growth.
     stop, growth = threading.Event(), Growth()
 
     def whole() -> bool:
@@ -208,4 +215,28 @@ def test_the_recorder_survives_and_then_records(topic: str, count: int, tmp_path
     assert recorders[-1].title == "after all that"
     assert any(trouble.code == "messages_refused" for health in bus.healths for trouble in health.troubles)
     assert bus.published[topics.segment_request()] > 0
+    assert growth.mb < GROWTH_MB
+
+
+@pytest.mark.parametrize("count", COUNTS)
+@pytest.mark.parametrize("topic", topics_of("services.evaluation.process"))
+def test_the_evaluation_survives_and_then_finds_the_attempt_that_was_asked_for(topic: str, count: int, tmp_path: Path) -> None:
+    stop, growth = threading.Event(), Growth()
+    track, _ = performance("squat")
+    frames = [*[track.joints_m[0]] * 30, *track.joints_m, *[track.joints_m[-1]] * 30]
+
+    def performed() -> Iterator[Delivery]:
+        yield Delivery(topics.activity_request(), codec.encode(ActivityRequest("squat")))
+        begun_ns = time.monotonic_ns()
+        for number, joints_m in enumerate(frames):
+            time.sleep(1 / 60)  # health comes once a second
+            shown = motion(begun_ns + number * 33_333_333, number, "smooth")
+            shown = msgspec.structs.replace(shown, joints_m=joints_m.astype(np.float32))
+            yield Delivery(topics.motion("smooth"), codec.encode(shown))
+
+    bus = FeedBus(chain(deliveries(topic, count, growth), performed()), stop)
+    EvaluationLoop(context_of("evaluation", bus, stop, tmp_path), some("squat", "long_jump")).run()
+    told = codec.decode(bus.newest[topics.feedback()], Feedback)
+    assert (told.action, told.by) == ("squat", "chosen")
+    assert sum(health.evaluation.rejected for health in bus.healths if health.evaluation is not None) > 0
     assert growth.mb < GROWTH_MB
