@@ -165,6 +165,12 @@ def test_a_replay_ends_by_a_touch_and_when_the_next_attempt_begins(tablet: Page,
     shown.wait_until("d.stage === 'live' && Number(d.coloured) === 1")
     expect(tablet.get_by_role("group", name="Slow replay")).to_have_count(0)
     see(shown, room, tried(SHOT))
+    with_scene(room, evaluating="moving")  # walks back: what he did is to be seen once
+    expect(tablet.locator(".activity")).to_have_attribute("data-moving", "true")
+    shown.wait_until("d.stage === 'replay' && Number(d.rounds) >= 1")
+    with_scene(room, evaluating="waiting")
+    expect(tablet.locator(".activity")).to_have_attribute("data-moving", "false")
+    assert tablet.locator(".page").get_attribute("data-stage") == "replay"
     with_scene(room, evaluating="moving")
     shown.wait_until("d.stage === 'live'")
 

@@ -108,7 +108,7 @@ export class Viewer {
     const moved = this.room.status?.evaluation.state === 'moving';
     this.room.status = status;
     this.lesson.confirm(status.evaluation.activity, nowMs);
-    if (!moved && status.evaluation.state === 'moving' && !this.replays.held(nowMs)) this.backToLive();
+    if (!moved && status.evaluation.state === 'moving' && this.replays.isOver(nowMs)) this.backToLive();
     this.lateness.noteStatus(status, nowMs);
     this.search.note(status, nowMs);
     this.say();
@@ -211,6 +211,7 @@ export class Viewer {
     this.droppedMs = -Infinity;
     if (this.link.connected) {
       this.lesson.forget(); // the box tells anew
+      this.replays.forget();
       void this.learnWords();
     } else {
       this.room.status = null; // what was known of the cameras is no longer
@@ -263,6 +264,7 @@ export class Viewer {
     data['stage'] = this.replays.onStage ? 'replay' : 'live';
     data['attempt'] = this.show.id === null ? '' : String(this.show.id);
     data['position'] = this.replays.positionS.toFixed(2);
+    data['rounds'] = String(this.replays.rounds);
     data['levels'] = [0, 1, 2, 3]
       .map((level) => this.replays.levels?.filter((own) => own === level).length ?? 0)
       .join();

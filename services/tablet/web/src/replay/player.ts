@@ -39,6 +39,7 @@ export class Player {
   /** Goes to a moment and stays there. */
   seek(positionS: number): void {
     this.playing = false;
+    this.restedS = 0;
     this.at = Math.min(Math.max(positionS, 0), this.lengthS);
   }
 

@@ -49,6 +49,24 @@ export class Replays {
     return this.show.on && nowMs < this.heldUntilMs;
   }
 
+  /**
+   * The pupil moves again: is that the end of the replay? Not while somebody looks at it, and not before it was to be seen once, as
+   * whoever has tried something walks back first.
+   */
+  isOver(nowMs: number): boolean {
+    const player = this.player;
+    return !this.held(nowMs) && (player === null || !player.playing || player.rounds > 0);
+  }
+
+  get rounds(): number {
+    return this.player?.rounds ?? 0;
+  }
+
+  /** The box was perhaps started anew, and gives the same numbers to other attempts. */
+  forget(): void {
+    this.kept.clear();
+  }
+
   /** Somebody touched the replay, or asked for it. */
   touch(): void {
     this.heldUntilMs = performance.now() + HELD_MS;
