@@ -13,6 +13,7 @@ from models.messages.feedback import Colour, MeasureResult
 from models.skeleton import coco
 from models.teaching.schema import Language
 from services.evaluation.report import page
+from services.evaluation.report.body import together
 from services.evaluation.report.curve import curves_of
 from services.evaluation.report.figures import figures
 from services.evaluation.report.sheet import Tried, sheet_of
@@ -187,6 +188,19 @@ def test_every_action_is_drawn_within_its_paper(action: str, handed: str) -> Non
         assert (points >= 0).all()
         assert (points <= (width, height)).all()
     assert len(curves_of(told, shipped().teachings[action])) == 2
+
+
+def test_a_part_of_several_joints_is_as_bad_as_the_worst_and_grey_unless_most_were_judged() -> None:
+    grey, green, yellow, red = Colour.GREY, Colour.GREEN, Colour.YELLOW, Colour.RED
+    told: dict[tuple[Colour, ...], Colour] = {
+        (green, green): green,
+        (green, grey): grey,
+        (red, grey): grey,
+        (green, red): red,
+        (grey, grey): grey,
+    }
+    told |= {(green, green, yellow, grey, grey): yellow, (green, green, grey, grey, grey): grey}
+    assert {colours: together(np.array(colours, np.uint8)) for colours in told} == told
 
 
 @pytest.mark.parametrize("action", ACTIONS)
