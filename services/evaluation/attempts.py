@@ -7,7 +7,7 @@ else that began before is under way and so far fits better, it is waited for. Th
 before its end counts any more.
 
 A sprint and a jog are told apart as all else is: a jog's poses are nearly a run's, but not its speed, which is one of the features.
-A jog stays at 0.7 of the distance from a run, a run with a fault of twice the size that a teacher would correct at 0.43.
+Of development pupils, no jog came nearer to a run than 0.57, and no run with one fault was further than 0.48.
 """
 
 from collections import deque
@@ -47,7 +47,7 @@ class FindingConfig:
         performances: of each standard that are compared.
     """
 
-    distance: float = 0.57
+    distance: float = 0.53
     tempo: tuple[float, float] = (0.55, 1.8)
     wait_s: float = 0.37
     patience_s: float = 1.5
