@@ -8,6 +8,7 @@ import pytest
 from models.messages.feedback import Judgement
 from models.motions.actions.library import ACTIONS
 from services.evaluation.cues import Said
+from services.evaluation.uncertainty import NETWORK
 from tests.bench.teaching.cases import Case
 from tests.bench.teaching.cues import Result, confusion, figures, response
 from tests.bench.teaching.noise import SIGMA_M, as_fused
@@ -69,7 +70,7 @@ def test_noise_is_as_large_as_it_says_and_smooth() -> None:
     still = np.zeros((3000, 17, 3))
     track = as_fused(still, 1 / 30, np.random.default_rng(0))
     wrist = track.joints_m[:, 10]
-    expected = math.hypot(SIGMA_M, 0.006)
+    expected = math.hypot(SIGMA_M, NETWORK.landmark_m[10])
     assert wrist.std(axis=0) == pytest.approx([expected] * 3, rel=0.12)
     assert np.diff(wrist, axis=0).std() < 0.6 * expected
     assert np.allclose(track.covariance_m2[0, 0], SIGMA_M**2 * np.eye(3))
