@@ -52,11 +52,11 @@ attempt:
   colour alike: plain is as it should be, dots a little off, stripes off; hollow with a dashed edge is not sure, what was not seen
   is not drawn. Feet and hands are never drawn, for nobody measures them;
 - two angles over time, first what the cue is about, then what the tablet shows; heights, distances and speeds have no curve. The
-  black line is the pupil, the dashed one the standard along the alignment. The band is as wide as a teacher's patience: half of the way from `good` to `fault` in the
-  teaching file, where a cue begins; half of the range that is good, where only that is known; never less than 10 degrees. Where
-  the angle is less sure than the band is wide, there is no line but hatching. How sure it is elsewhere stands below, by the
-  landmark errors of [accuracy](accuracy.md) and a noise of 10 mm a joint, which is its usual size; a recorded attempt has no
-  covariances.
+  black line is the pupil, the dashed one the standard along the alignment. The band is as wide as a teacher's patience: half of
+  the way from `good` to `fault` in the teaching file, where a cue begins; half of the range that is good, where only that is
+  known; never less than 10 degrees. Where the angle is less sure than the band is wide, there is no line but hatching. How sure
+  it is elsewhere stands below, by the landmark errors of [accuracy](accuracy.md) and a noise of 10 mm a joint, which is its usual
+  size; a recorded attempt has no covariances.
 
 The mean score's sigma is the mean of the attempts' sigmas: the errors of one pupil are alike, and more attempts make it no surer.
 
