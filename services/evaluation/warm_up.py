@@ -1,5 +1,8 @@
 """Compiles every hot loop before the first attempt, by judging one that is known."""
 
+from dataclasses import replace
+
+from models.messages.feedback import ANY
 from services.evaluation.appraisal import Moments, appraise
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.config import EvaluationConfig
@@ -10,14 +13,16 @@ from services.evaluation.track import known_track
 
 def warm_up(config: EvaluationConfig) -> None:
     """Run every kernel once with the types that live data has. Seconds on a box's first start, milliseconds after."""
-    finder = initial_state(config).finder
     action, standard = next(iter(config.standards.items()))
+    # One action runs what all run, and to look for ten takes a second of preparation.
+    one = replace(config, teachings={action: config.teachings[action]}, standards={action: standard}, activity=ANY)
+    finder = initial_state(one).finder
     track = known_track(standard.joints_m, config.frame_s, 0.01)
     for joints_m, t_s in zip(track.joints_m, track.t_s.tolist(), strict=True):
         finder.push(joints_m, t_s)
-    for each in config.standards.values():  # What is prepared of a standard once is prepared now.
-        keyframes_of(track.joints_m, config.frame_s, (each,), each.action)
-    moments = Moments(float(track.t_s[-1]), 10**12, 0)
-    feedback = appraise(track, FoundAttempt(action, "left", standard.moments_s), "chosen", moments, config)
+    keyframes_of(track.joints_m, config.frame_s, (standard,), action)
+    feedback = appraise(
+        track, FoundAttempt(action, "left", standard.moments_s), "chosen", Moments(float(track.t_s[-1]), 10**12, 0), one
+    )
     if not feedback.colours.any():
         raise AssertionError("the evaluation cannot compare a standard with itself")
