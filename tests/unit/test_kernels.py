@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import models.body
+import services.evaluation
 import services.fusion
 from tests.installed import ROOT
 
@@ -20,7 +21,7 @@ def double(value):
     return 2 * value
 """
 ASK = "import kernel; from services.doctor.kernels import is_compiled; print(is_compiled(kernel.double))"
-FOLDERS = [Path(package.__file__ or "").parent for package in (services.fusion, models.body)]
+FOLDERS = [Path(package.__file__ or "").parent for package in (services.fusion, services.evaluation, models.body)]
 
 
 def _compiled_functions(tree: ast.Module) -> dict[str, ast.FunctionDef]:
