@@ -90,15 +90,15 @@ def _taken(measure: Measure, series: Series, samples: list[Sample]) -> _Value:
     if measure.take in {"at", "change"}:
         first, last = samples[0], samples[-1]
         return _Value(first.value, first.weights) if measure.take == "at" else _difference(last, first)
-    highest, lowest = top(series, samples), top(series, samples, -1.0)
-    if highest is None or lowest is None:
+    extreme = top(series, samples, -1.0 if measure.take.endswith("min") else 1.0)
+    other = top(series, samples, -1.0) if measure.take == "range" else extreme
+    if extreme is None or other is None:
         return _Value(math.nan, None)
     if measure.take == "range":
-        return _difference(highest, lowest)
-    chosen = highest if measure.take.endswith("max") else lowest
+        return _difference(extreme, other)
     if measure.take.startswith("time_"):
-        return _Value((chosen.place - samples[0].place) * series.frame_s, None, top_sigma_s(series, chosen))
-    return _Value(chosen.value, chosen.weights)
+        return _Value((extreme.place - samples[0].place) * series.frame_s, None, top_sigma_s(series, extreme))
+    return _Value(extreme.value, extreme.weights)
 
 
 def _difference(last: Sample, first: Sample) -> _Value:

@@ -166,7 +166,7 @@ SIGNALS = (
         "head_flexion",
         "deg",
         "The line from the ears to the nose against the front of the trunk: positive with the chin down. "
-        "Somebody who looks straight ahead has about 20.",
+        "Somebody who looks straight ahead has about 5.",
         _head_flexion,
     ),
 )

@@ -2,14 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Final
 
 import numpy as np
 
 from models.arrays import Bool, Float
 from models.motions.motion import Handed
-from models.skeleton import coco
 from services.evaluation.signals.mass import masses_of
 from services.evaluation.signals.posture import BodySide, Posture, SideAsked
 from services.evaluation.signals.series import LASTINGS, NOISES, Series
@@ -107,12 +106,11 @@ class Reading:
 
     def _series(self, signal: Signal, value: Float, slopes: Float, used: list[int]) -> Series:
         count = len(self.track)
-        noise, lasting = np.zeros((count, coco.COUNT, 3)), np.zeros((count, coco.COUNT, 3))
         model = self.model
         order = signal.order
-        noise[:, used] = _rate_share(model.noise_s, order) * np.einsum("tji,tjia->tja", slopes, self._roots_m[:, used])
-        lasting[:, used] = _rate_share(model.landmark_s, order) * slopes * np.array(model.landmark_m)[used, None]
-        noise, lasting = (np.einsum("tja,jm->tma", factors, model.mixed) for factors in (noise, lasting))
+        noise = _rate_share(model.noise_s, order) * (slopes[..., None, :] @ self._roots_m[:, used])[..., 0, :]
+        lasting = _rate_share(model.landmark_s, order) * slopes * np.array(model.landmark_m)[used, None]
+        noise, lasting = (model.mixed[used].T @ factors for factors in (noise, lasting))
         lastings = np.zeros((count, LASTINGS))
         lastings[:, :NOISES] = lasting.reshape(count, NOISES)
         if signal.unit == "pct":
@@ -139,19 +137,19 @@ def _slopes(formula: Callable[[Callable[[int], Float]], Float], points: Float, u
 
     Root mean square of what a step forwards and one backwards change: at a bend, where they cancel, either still counts.
     """
-    rows = 6 * len(used)
-    moved = {}
-    for place, joint in enumerate(used):
-        many = np.repeat(points[None, :, joint], rows, axis=0)
-        for axis in range(3):
-            many[6 * place + axis, :, axis] += _STEP
-            many[6 * place + 3 + axis, :, axis] -= _STEP
-        moved[joint] = many
-    change = formula(moved.__getitem__) - value
+    steps = _STEP * np.concatenate((np.eye(3), -np.eye(3)))[:, None, :]
+    change = np.empty((len(used), 6, len(value)))
+    for place, moved in enumerate(used):
+        change[place] = formula(partial(_moved, points, moved, points[:, moved] + steps)) - value
     if turns:
         change = (change + 180) % 360 - 180
-    forwards, backwards = change.reshape(len(used), 2, 3, -1).transpose(1, 3, 0, 2) / _STEP
+    forwards, backwards = change.reshape(len(used), 2, 3, len(value)).transpose(1, 3, 0, 2) / _STEP
     return np.asarray(np.copysign(np.sqrt((forwards**2 + backwards**2) / 2), forwards - backwards))
+
+
+def _moved(points: Float, moved: int, places: Float, joint: int) -> Float:
+    """A joint's places, (T, 3), or of the one that is moved those that it is moved to, (6, T, 3)."""
+    return places if joint == moved else points[:, joint]
 
 
 def _seen(slopes: Float, seen: Bool) -> Bool:
