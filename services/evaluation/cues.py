@@ -16,6 +16,8 @@ CALLED: Final = 0.5
 """From this severity on a fault is corrected."""
 SURE: Final = 0.75
 """So likely it must be that a fault is one, to be spoken of."""
+VAGUE: Final = 0.48
+"""A severity with a larger standard deviation is not spoken of, however large it looks: such joints are often quite wrong."""
 GOOD: Final = 0.4
 SURELY_GOOD: Final = 0.9
 """A point is praised that has less than this severity, so likely."""
@@ -67,7 +69,7 @@ def above(judgement: Judgement, severity: float) -> float:
 def _urgency(judgement: Judgement, importance: float) -> float:
     """Importance times size times certainty; 0 for what is not to be corrected."""
     sure = above(judgement, CALLED)
-    if judgement.severity is None or sure < SURE:
+    if judgement.severity is None or judgement.sigma is None or sure < SURE or judgement.sigma > VAGUE:
         return 0.0
     return importance * min(judgement.severity, _WORST) * sure
 

@@ -38,6 +38,11 @@ def test_silence_where_nobody_can_be_sure() -> None:
     assert said({"a": 1, "b": 1}, a=(0.6, 0.5), b=(0.45, 0.3)) == Said()
 
 
+def test_silence_where_what_looks_large_is_vague() -> None:
+    assert said({"a": 1, "b": 3}, a=(0.9, 0.2), b=(2.0, 0.6)).cue == "a"
+    assert said({"b": 3}, b=(2.0, 0.6)).cue == ""
+
+
 def test_silence_where_nothing_was_seen() -> None:
     assert said({"a": 1, "b": 1}, a=None, b=None) == Said()
 
@@ -55,7 +60,7 @@ def test_the_larger_of_two_faults_is_corrected() -> None:
 
 
 def test_the_surer_of_two_faults_is_corrected() -> None:
-    assert said({"a": 2, "b": 2}, a=(1.0, 0.6), b=(1.0, 0.05)).cue == "b"
+    assert said({"a": 2, "b": 2}, a=(1.0, 0.45), b=(1.0, 0.05)).cue == "b"
 
 
 def test_the_first_of_two_equal_faults_is_corrected() -> None:
