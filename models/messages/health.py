@@ -90,7 +90,7 @@ class EvaluationHealth(msgspec.Struct, frozen=True):
     Attributes:
         activity: the action that pupils are to do; empty if whatever they do is recognised.
         chosen_by: whose word that was: the site file's, or a tablet's.
-        state: "moving" while an attempt seems to be under way; "waiting" between them; "unknown" if no pupil is seen.
+        state: "moving" while the pupil moves, in an attempt or on his way back; "waiting" while he stands; "unknown" if he is lost.
         attempts: found since the process started.
         frame_ms: CPU milliseconds a smooth motion over the last second, those in which an attempt ended included.
         attempt_ms: CPU milliseconds that the last attempt took; 0 before the first.

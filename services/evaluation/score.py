@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.polynomial.hermite_e import hermegauss
 
+from models.arrays import Float
 from models.messages.feedback import Colour, Judgement
 from models.teaching.schema import Teaching
 from services.evaluation.deviation import RED, Deviation
@@ -22,6 +24,11 @@ _FULL: Final = 1.25
 """From this severity on a fault costs no more."""
 _UNKNOWN_SIGMA: Final = 0.3
 """What a fault that nobody could judge may have cost, of what it counts."""
+
+
+_NODES, _SHARES = hermegauss(15)
+_SHARES /= _SHARES.sum()
+"""Places, in standard deviations, and shares with which a normal distribution is summed up."""
 
 
 @dataclass(frozen=True)
@@ -48,15 +55,20 @@ def score(teaching: Teaching, judgements: Sequence[Judgement], deviation: Deviat
         return None
     severities = np.array([one.severity or 0.0 for one in judgements])
     sigmas = np.array([one.sigma or 0.0 for one in judgements])
-    lost = np.clip((severities - _FREE) / (_FULL - _FREE), 0.0, 1.0)
-    roots = np.sqrt(weights)
-    good = 1 - float(np.linalg.norm(roots * lost))
-    slopes = np.where((severities > _FREE - sigmas) & (severities < _FULL + sigmas), roots / (_FULL - _FREE), 0.0)
-    variance = float(((slopes * sigmas) ** 2).sum()) + float(weights[~known].sum()) * _UNKNOWN_SIGMA**2
+    good = 1 - float(np.linalg.norm(np.sqrt(weights) * _lost(severities)))
+    # What a fault costs ends at either side, so its deviation is not a slope's: it is that of the costs of what it may have been.
+    may_be = _lost(severities[:, None] + sigmas[:, None] * _NODES)
+    deviations = np.sqrt(np.maximum((may_be**2) @ _SHARES - (may_be @ _SHARES) ** 2, 0.0))
+    variance = float(weights @ deviations**2) + float(weights[~known].sum()) * _UNKNOWN_SIGMA**2
     near = None if deviation is None else _near(deviation)
     if near is not None:
         good, variance = _FAULTS_SHARE * good + (1 - _FAULTS_SHARE) * near[0], _FAULTS_SHARE**2 * variance + near[1]
     return Score(100 * min(max(good, 0.0), 1.0), 100 * math.sqrt(variance))
+
+
+def _lost(severity: Float) -> Float:
+    """What faults of these severities cost, 0 to 1."""
+    return np.clip((severity - _FREE) / (_FULL - _FREE), 0.0, 1.0)
 
 
 def _near(deviation: Deviation) -> tuple[float, float] | None:
