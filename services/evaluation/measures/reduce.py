@@ -67,9 +67,9 @@ def _reduced(measure: Measure, series: Series, attempt: FoundAttempt, unit: Unit
     samples = _samples(measure, series, moments)
     found = _taken(measure, series, samples)
     name = name_of(measure)
-    if not math.isfinite(found.value):
-        inside = samples[0].place >= 0 and samples[-1].place <= len(series) - 1
-        return Measured(name, math.nan, math.nan, unit, False, HIDDEN if inside else OUTSIDE)
+    inside = _share_inside(series, samples)
+    if not math.isfinite(found.value) or inside < SEEN_SHARE:
+        return Measured(name, math.nan, math.nan, unit, False, HIDDEN if inside == 1 else OUTSIDE)
     variance = found.sigma**2 if found.weights is None else series.variance(found.weights)
     for phase in moments:
         variance += _moment_variance(measure, series, moments, phase)
@@ -124,6 +124,15 @@ def _moment_variance(measure: Measure, series: Series, moments: Mapping[Phase, f
         values.append(_taken(measure, series, moved).value)
     change = (values[1] - values[0]) / 2
     return change**2 if math.isfinite(change) else 0.0
+
+
+def _share_inside(series: Series, samples: list[Sample]) -> float:
+    """Of a stretch, how much lies within the track; an end may lie half a frame beside it."""
+    first, last, end = samples[0].place, samples[-1].place, len(series) - 1
+    if first == last:
+        return float(-0.5 <= first <= end + 0.5)
+    beside = max(-first - 0.5, 0.0) + max(last - end - 0.5, 0.0)
+    return max(1 - beside / (last - first), 0.0)
 
 
 def _seen(series: Series, samples: list[Sample], weights: Float | None) -> bool:
