@@ -94,9 +94,9 @@ class AttemptFinder:
         self._standards, self._frame_s, self._config = tuple(standards), frame_s, config
         self._templates = tuple(
             template
-            for standard in self._standards
+            for standard, symmetric in zip(self._standards, map(_is_symmetric, self._standards), strict=True)
             for exemplar in (standard.performance, *standard.exemplars)[: config.performances]
-            for template in _templates(standard.action, exemplar, _is_symmetric(standard))
+            for template in _templates(standard.action, exemplar, symmetric)
         )
         self._spring = Spring([template.features for template in self._templates])
         self._still = np.array([template.still[-1] for template in self._templates])
