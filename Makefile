@@ -42,9 +42,19 @@ run: setup ## Start KineBox on the built-in lesson (SOURCE=footage or footage2: 
 	@exec kinebox run --site $(SITE) --data $(DATA)
 
 test: setup $(FILMS) ## All tests but the four suites below: unit, property, golden, real sockets and processes, the page in Chromium
-	@$(MAKE) --no-print-directory lint
+	@# The checkers leave cores idle. An open page or a running box takes one for as long as it is there: one at a time, beside all others.
+	@$(MAKE) --no-print-directory --jobs=3 lint tests-of-the-page tests-of-the-whole tests-of-parts
+
+WHOLE := tests/browser tests/system
+.PHONY: tests-of-the-page tests-of-the-whole tests-of-parts
+tests-of-the-page: $(WEB)/node_modules/.ready
 	cd $(WEB) && npm run --silent check && npm test
-	$(PYTHON) -m pytest -n 4 --dist loadfile # many tests wait, for processes and deadlines
+
+tests-of-the-whole: $(VENV)/.ready
+	$(PYTHON) -m pytest -q $(WHOLE)
+
+tests-of-parts: $(VENV)/.ready # many wait, for processes and deadlines; the order is that of tests/conftest.py
+	$(PYTHON) -m pytest -q -n 4 --dist loadfile --no-loadscope-reorder $(addprefix --ignore=,$(WHOLE))
 
 check: $(VENV)/.ready ## Formatting, types, import boundaries and the fast tests; under a minute
 	@$(MAKE) --no-print-directory --jobs=2 --output-sync=line lint fast-tests # the type checker leaves cores idle
@@ -118,8 +128,8 @@ test-faults: setup $(FILM_OF_footage) ## The box killed, stopped and starved: ev
 test-mutations: setup ## 100,000 mutated messages on each topic and on the tablet's socket
 	$(PYTHON) -m pytest -m mutations tests/mutations
 
-test-motions: $(VENV)/.ready ## Simulated pupils of all ages perform every action in every way; every fault and its size
-	$(PYTHON) -m pytest -n 2 -m motions tests/property
+test-motions: $(VENV)/.ready ## Simulated pupils of all ages perform every action in every way; every fault and its size; the twin finds a known network again
+	$(PYTHON) -m pytest -n 2 -m motions tests/property tests/unit/test_twin.py
 
 test-rendering: setup ## Lessons rendered, found again, broken off and out of disk
 	$(PYTHON) -m pytest -m rendering tests/integration
@@ -160,10 +170,10 @@ bench-simulate: $(VENV)/.ready kernels ## Time and memory that rendering a lesso
 bench-networks: $(VENV)/.ready networks kernels ## How well the pose networks see simulated pupils, and the landmark bias
 	$(PYTHON) -m tests.bench.networks --data $(DATA) $(ARGS)
 
-bench-keyframes: $(VENV)/.ready kernels ## Attempts and keyframes on true motion and on the twin, and half an hour without one (ARGS=--on true|twin|idle)
+bench-keyframes: $(VENV)/.ready networks kernels ## Attempts, keyframes and cues: rendered (the first time for hours), on true motion, on the twin; half an hour without one (ARGS=--on rendered|true|twin|idle)
 	$(PYTHON) -m tests.bench.teaching.keyframes --data $(DATA) $(ARGS)
 
-bench-measures: $(VENV)/.ready kernels ## Angles, jumps and all else that is measured, against the truth on the twin, and jumps over a force plate (SHARED)
+bench-measures: $(VENV)/.ready networks kernels ## Angles, jumps and all else that is measured, against the truth on the twin (ARGS=--on rendered: on films), and jumps over a force plate (SHARED)
 	$(PYTHON) -m tests.bench.teaching.measures --data $(DATA) --shared $(SHARED) $(ARGS)
 
 twin: $(VENV)/.ready networks kernels ## Fit the twin to rendered lessons anew (the first time they are rendered, which takes hours), and print how far it agrees

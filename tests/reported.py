@@ -42,9 +42,10 @@ def attempt(
         exemplar: which one; 0 is the standard.
         hidden: joints that nobody saw.
         guessed: joints that were guessed.
-        told: fields of the feedback that shall be otherwise.
+        told: fields of the feedback that shall be otherwise; of what is made up nobody approves, unless told.
     """
-    changed: Feedback = msgspec.structs.replace(_attempt(action, handed, after_s, exemplar, hidden, guessed), **told)
+    made_up = {"fine": False} | told if told else {}
+    changed: Feedback = msgspec.structs.replace(_attempt(action, handed, after_s, exemplar, hidden, guessed), **made_up)
     return changed
 
 

@@ -5,7 +5,9 @@ from functools import cache
 import numpy as np
 
 from models.arrays import Float
+from models.interpolation import between
 from models.motions.motion import Handed
+from models.skeleton import coco
 from models.teaching.standard import Exemplar
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.config import VOCABULARY, EvaluationConfig
@@ -43,3 +45,16 @@ def performance(action: str, handed: Handed = "right", number: int = 0) -> tuple
     exemplar: Exemplar = (standard.performance, *standard.exemplars)[number]
     track = known_track(placed(exemplar.joints_m, handed), shipped().frame_s, SIGMA_M)
     return track, FoundAttempt(action, handed, exemplar.moments_s)
+
+
+def shallow_squat(depth: float) -> Float:
+    """(T, 17, 3) the squat of the standard to a share of its depth: every pose is one of its own, on the same way down or up."""
+    joints_m = shipped().standards["squat"].joints_m
+    heights_m = joints_m[:, [coco.INDEX["left_hip"], coco.INDEX["right_hip"]], 2].mean(axis=1)
+    lowest, frames = int(heights_m.argmin()), np.arange(len(joints_m), dtype=np.float64)
+    drop_m = heights_m.max() - heights_m
+    down, up = np.maximum.accumulate(drop_m[: lowest + 1]), np.maximum.accumulate(drop_m[:lowest:-1])
+    poses = np.concatenate(
+        (np.interp(depth * down, down, frames[: lowest + 1]), np.interp(depth * up, up, frames[:lowest:-1])[::-1])
+    )
+    return between(joints_m, poses)

@@ -1,8 +1,13 @@
 """Teaching files for tests: one that is right, and what it may be made of."""
 
 from models.teaching.schema import Vocabulary
+from services.evaluation.measures.catalogue import FUNCTIONS
+from services.evaluation.signals.catalogue import CATALOGUE
 
-VOCABULARY = Vocabulary(("knee_flexion", "trunk_forward"), ("jump_height",))
+VOCABULARY = Vocabulary(
+    {name: CATALOGUE[name] for name in ("knee_flexion", "trunk_forward", "wrist_acceleration")},
+    {name: FUNCTIONS[name] for name in ("jump_height",)},
+)
 
 GOOD = """
 version = 1

@@ -15,6 +15,9 @@ SITE_VERSION = 2
 MAX_LATE_S = 5.0
 """Pictures that are late wait in memory."""
 
+SCHOOL_FOLDER = "school"
+"""In the data folder: what a school teaches of its own, if the site file names no other folder."""
+
 _LONGEST_S = 1e9
 """Thirty years: what counts nanoseconds can count it."""
 _OFTENEST_S = 0.004
@@ -101,7 +104,7 @@ class EvaluationConfig(Section, frozen=True):
         str,
         Meta(
             description="a folder of this school's own, relative to the data folder: what is in its `actions` and `standards` "
-            "counts in the place of what KineBox brings; empty: none"
+            "counts in the place of what KineBox brings; empty: `school`, if there is such a folder"
         ),
     ] = ""
 

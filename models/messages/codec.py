@@ -10,15 +10,32 @@ from typing import Any, TypeVar
 import msgspec
 import numpy as np
 
+from models.messages.attempts import AttemptsBegin, FeedbackRequest, RememberedFeedback
 from models.messages.control import ViewControl
 from models.messages.feedback import ActivityRequest, Feedback
 from models.messages.health import Health
 from models.messages.lesson import FusionLog, LessonRequest, SegmentRequest
 from models.messages.motion import Motion
 from models.messages.observation import Observation
+from models.messages.pupil import PupilCorrections, PupilTurn
 
 VERSION = 2
-Message = Observation | Motion | ViewControl | Health | FusionLog | SegmentRequest | LessonRequest | Feedback | ActivityRequest
+Message = (
+    Observation
+    | Motion
+    | ViewControl
+    | Health
+    | FusionLog
+    | SegmentRequest
+    | LessonRequest
+    | Feedback
+    | ActivityRequest
+    | PupilTurn
+    | PupilCorrections
+    | AttemptsBegin
+    | FeedbackRequest
+    | RememberedFeedback
+)
 MessageT = TypeVar("MessageT", bound=Message)
 
 _TYPES: dict[int, type] = {
@@ -31,6 +48,11 @@ _TYPES: dict[int, type] = {
     7: LessonRequest,
     8: Feedback,
     9: ActivityRequest,
+    10: PupilTurn,
+    11: PupilCorrections,
+    12: AttemptsBegin,
+    13: FeedbackRequest,
+    14: RememberedFeedback,
 }
 _CODES = {kind: code for code, kind in _TYPES.items()}
 _ARRAY = 1

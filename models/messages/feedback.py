@@ -12,10 +12,11 @@ from msgspec import Meta
 from models.arrays import Float32, UInt8
 from models.messages.motion import JointState
 from models.messages.observation import require_array, require_count
+from models.messages.pupil import NOBODY, PupilCodeOrNone
 from models.skeleton import coco
 
-MAX_FRAMES: Final = 900
-"""Half a minute at 30 Hz: nobody tries one thing for longer."""
+MAX_FRAMES: Final = 1200
+"""Forty seconds at 30 Hz: longer than the longest standard that there may be, performed as slowly as counts as an attempt at it."""
 MAX_ENTRIES: Final = 64
 """Judgements or measures of one attempt."""
 MAX_SHOWN: Final = 3
@@ -32,6 +33,8 @@ NameOrNone = Annotated[str, Meta(pattern=r"^([a-z][a-z0-9_]{0,47})?\Z")]
 Unit = Annotated[str, Meta(max_length=16)]
 Verdict = Literal["good", "fair", "poor", "unknown"]
 VERDICTS: Final[tuple[Verdict, ...]] = get_args(Verdict)
+Silence = Literal["fine", "unsure", "unseen"]
+"""What it means that nothing is corrected: nothing was wrong; nothing that is sure enough; too little was seen."""
 
 
 class Colour(IntEnum):
@@ -96,7 +99,7 @@ class MeasureResult(msgspec.Struct, frozen=True):
             raise ValueError(f"the measure {self.name} has the verdict {self.verdict}, and no value")
 
 
-class Feedback(msgspec.Struct, frozen=True, eq=False):
+class Feedback(msgspec.Struct, frozen=True, eq=False, omit_defaults=True):
     """One attempt and what is to be said of it.
 
     Frame i of the T frames is at `t_first_ns + i * frame_ns`; the keyframes lie within them, as a rule with a little before the
@@ -123,8 +126,11 @@ class Feedback(msgspec.Struct, frozen=True, eq=False):
         joints_m: (T, 17, 3) COCO keypoints in the world frame, metres; zero and without meaning where UNKNOWN.
         states: (T, 17) `JointState`.
         colours: (T, 17) `Colour`; grey where the state is not SEEN.
-        standard_m: (T, 17, 3) how it should look: the standard along the alignment's path, at the pupil's place, heading and size;
-            NaN where there is none.
+        standard_m: (T, 17, 3) how it should look: the standard at the moment that a frame is beside, at the pupil's place, heading
+            and size; NaN where there is none.
+        pupil: code of who was up when the attempt began; `NOBODY` for nobody who was named, which is left out on the wire.
+        fine: nothing is to be corrected, and that is sure: every fault was judged, none is likely to have been made, and no shown
+            measure is poor. False, and left out on the wire, with a cue, in doubt, and in lessons from before this was said.
     """
 
     id: int
@@ -148,6 +154,8 @@ class Feedback(msgspec.Struct, frozen=True, eq=False):
     states: UInt8
     colours: UInt8
     standard_m: Float32
+    pupil: PupilCodeOrNone = NOBODY
+    fine: bool = False
 
     def __post_init__(self) -> None:
         for field in ("id", "epoch", "t_published_ns", "t_first_ns", "frame_ns"):
@@ -170,6 +178,8 @@ class Feedback(msgspec.Struct, frozen=True, eq=False):
             raise ValueError("the same point cannot be good and to be corrected")
         if not _require_different("shown", list(self.shown)) <= measures:
             raise ValueError("what is shown must be among the measures")
+        if self.fine and not self._can_be_fine:
+            raise ValueError("fine is only what was judged as a whole, without anything to correct and without a poor measure")
 
     def _require_frames(self) -> None:
         count = len(self.states) if self.states.ndim else 0
@@ -194,6 +204,21 @@ class Feedback(msgspec.Struct, frozen=True, eq=False):
             raise ValueError(f"keyframes_ns must follow one another, not {self.keyframes_ns}")
         if not self.t_first_ns <= self.keyframes_ns[0] < self.keyframes_ns[-1] <= last_ns:
             raise ValueError(f"keyframes_ns must be within {self.t_first_ns} and {last_ns}, not {self.keyframes_ns}")
+
+    @property
+    def _can_be_fine(self) -> bool:
+        poor = {measure.name for measure in self.measures if measure.verdict == "poor"}
+        judged = self.score is not None and all(judgement.known for judgement in self.judgements)
+        return judged and not self.cue and poor.isdisjoint(self.shown)
+
+    @property
+    def silence(self) -> Silence | None:
+        """What it means that nothing is corrected, for whoever shows it; None if something is."""
+        if self.cue:
+            return None
+        if self.score is None:
+            return "unseen"
+        return "fine" if self.fine else "unsure"
 
     def frame_of(self, t_ns: int) -> int:
         """The frame nearest to an instant between the first and the last."""

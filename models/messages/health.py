@@ -1,9 +1,12 @@
 """How a process is (everyone -> supervisor, governor, tablet)."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import msgspec
+from msgspec import Meta
 
+from models.messages.attempts import REMEMBERED
+from models.messages.pupil import NOBODY, Count, PupilCodeOrNone
 from models.messages.trouble import Trouble, one_line
 
 State = Literal["starting", "ok", "degraded", "failed"]
@@ -52,7 +55,7 @@ class FusionHealth(msgspec.Struct, frozen=True):
     pupil: Literal["searching", "found"]
 
 
-class RecorderHealth(msgspec.Struct, frozen=True):
+class RecorderHealth(msgspec.Struct, frozen=True, omit_defaults=True):
     """What the recorder does.
 
     Attributes:
@@ -61,6 +64,9 @@ class RecorderHealth(msgspec.Struct, frozen=True):
         recorded_s: length of what is safe on disk.
         size_bytes: of the file.
         gaps: interruptions since the lesson began.
+        began_ns: CLOCK_MONOTONIC of its begin; 0 while nothing is recorded.
+        attempts: how many it holds, as `kinebox report` counts them.
+        newest: `Feedback.id` of the last of them, in their order: the last one is number `attempts`.
     """
 
     lesson: str
@@ -68,6 +74,13 @@ class RecorderHealth(msgspec.Struct, frozen=True):
     recorded_s: float
     size_bytes: int
     gaps: int
+    began_ns: Count = 0
+    attempts: Count = 0
+    newest: Annotated[tuple[Count, ...], Meta(max_length=REMEMBERED)] = ()
+
+    def __post_init__(self) -> None:
+        if len(self.newest) > self.attempts:
+            raise ValueError(f"{len(self.newest)} of {self.attempts} attempts have names")
 
 
 class ReplayHealth(msgspec.Struct, frozen=True):
@@ -84,7 +97,7 @@ class ReplayHealth(msgspec.Struct, frozen=True):
     speed: float
 
 
-class EvaluationHealth(msgspec.Struct, frozen=True):
+class EvaluationHealth(msgspec.Struct, frozen=True, omit_defaults=True):
     """What the evaluation process does.
 
     Attributes:
@@ -96,6 +109,12 @@ class EvaluationHealth(msgspec.Struct, frozen=True):
         attempt_ms: CPU milliseconds that the last attempt took; 0 before the first.
         missed: smooth motions of the last second that fusion published and that were not taken in.
         rejected: messages of the last second that could not be read.
+        pupil: code of who is up; `NOBODY` for nobody who is named.
+        pupil_since_ns: CLOCK_MONOTONIC of that turn, as in `PupilTurn`; 0 before the first.
+        list_since_ns: since when attempts are listed, as in `AttemptsBegin`; 0 if no server has said so yet.
+        list_count: attempts published since.
+        list_newest: `Feedback.id` of the last one that is remembered; 0 if none is.
+        failures: of how many of the attempts nothing could be said, by a mistake of KineBox that is in its log.
     """
 
     activity: str
@@ -106,6 +125,12 @@ class EvaluationHealth(msgspec.Struct, frozen=True):
     attempt_ms: float
     missed: int
     rejected: int
+    pupil: PupilCodeOrNone = NOBODY
+    pupil_since_ns: Count = 0
+    list_since_ns: Count = 0
+    list_count: Count = 0
+    list_newest: Count = 0
+    failures: Count = 0
 
 
 class MachineHealth(msgspec.Struct, frozen=True):

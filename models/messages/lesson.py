@@ -17,11 +17,11 @@ import msgspec
 
 from models.messages.observation import require_count
 
-EntryKind = Literal["observation", "tick", "motion", "health", "feedback"]
+EntryKind = Literal["observation", "tick", "motion", "health", "feedback", "corrections"]
 """What a lesson is made of.
 
-"observation" and "tick" are fusion's input; "motion" (smooth) is its output; "health" is what a process said, and "feedback" what
-the evaluation said of an attempt, as the teacher saw it on the day.
+"observation" and "tick" are fusion's input; "motion" (smooth) is its output; "health" is what a process said, "feedback" what
+the evaluation said of an attempt, as the teacher saw it on the day, and "corrections" whose attempts were after all.
 """
 MAX_TITLE = 80
 LEASE_NS = 20_000_000_000

@@ -43,6 +43,31 @@ def activity_request() -> str:
     return f"{ROOM}/evaluation/activity"
 
 
+def pupil_turn() -> str:
+    """tablet -> evaluation"""
+    return f"{ROOM}/evaluation/pupil"
+
+
+def pupil_corrections() -> str:
+    """tablet -> fusion (for its log), evaluation"""
+    return f"{ROOM}/evaluation/corrections"
+
+
+def attempts_begin() -> str:
+    """tablet -> evaluation"""
+    return f"{ROOM}/evaluation/begin"
+
+
+def feedback_request() -> str:
+    """tablet -> evaluation"""
+    return f"{ROOM}/evaluation/ask"
+
+
+def remembered_feedback() -> str:
+    """evaluation -> tablet"""
+    return f"{ROOM}/evaluation/remembered"
+
+
 def health(process: str) -> str:
     """every process -> everyone"""
     return f"{ROOM}/health/{process}"

@@ -18,6 +18,7 @@ smallest, the last less the first, or when it is largest or smallest, in seconds
 
 _Word = Annotated[str, Meta(pattern=r"^[a-z][a-z0-9_]{0,39}\Z")]
 _FARTHEST_S: Final = 3.0
+_INWARDS_S: Final = 0.5
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -62,8 +63,12 @@ class Measure(Table, frozen=True, kw_only=True):
         stretch = self.over is not UNSET or isinstance(self.shift_s, tuple)
         if stretch == (self.take == "at"):
             raise ValueError("`take` says which number of a stretch, such as max or mean; at one instant it is left out")
-        if isinstance(self.shift_s, tuple) and self.over is UNSET and self.shift_s[0] >= self.shift_s[1]:
-            raise ValueError("`shift_s` goes from an earlier instant to a later one")
+        if isinstance(self.shift_s, tuple):
+            inwards_s = self.shift_s[0] - self.shift_s[1]
+            if self.over is UNSET and inwards_s >= 0:
+                raise ValueError("`shift_s` goes from an earlier instant to a later one")
+            if inwards_s > _INWARDS_S:
+                raise ValueError(f"`shift_s` takes more than {_INWARDS_S:g} seconds off `over`, so that often nothing is left")
 
     @property
     def stretch(self) -> tuple[Phase, float, Phase, float]:

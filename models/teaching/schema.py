@@ -8,7 +8,7 @@ import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import PurePath
-from typing import Annotated, Final, Literal
+from typing import Annotated, Final, Literal, Protocol, get_args
 
 import msgspec
 from msgspec import UNSET, Meta
@@ -24,6 +24,9 @@ _LONGEST: Final = 90
 _Words = Annotated[str, Meta(min_length=2, max_length=_LONGEST)]
 _Number = Annotated[float, Meta(ge=-1e4, le=1e4)]
 _Tolerance = Annotated[float, Meta(ge=0.5, le=50)]
+
+ShownUnit = Literal["deg", "cm", "pct", "m_s", "s", "deg_s"]
+"""What pages and reports have a word for."""
 
 
 class Text(Table, frozen=True, kw_only=True):
@@ -50,7 +53,7 @@ class Shown(Measure, frozen=True, kw_only=True):
 
     name: Annotated[_Name, Meta(description="for files")]
     title: Annotated[Text, Meta(description="for people")]
-    unit: Annotated[Literal["deg", "cm", "pct", "m_s", "s", "deg_s"], Meta(description="as the measure has it")]
+    unit: Annotated[ShownUnit, Meta(description="as the measure has it")]
     good: Annotated[tuple[_Number, _Number], Meta(description="from where to where it is good")]
 
     def __post_init__(self) -> None:
@@ -113,17 +116,25 @@ class Teaching(Table, frozen=True, kw_only=True):
                 yield f"fault '{fault.name}', evidence {number + 1}", evidence
 
 
+class Measurable(Protocol):
+    """A signal or a function."""
+
+    @property
+    def unit(self) -> str:
+        """Of its values."""
+
+
 @dataclass(frozen=True)
 class Vocabulary:
     """What measures may be made of.
 
     Attributes:
-        signals: names that `signal` may have.
-        functions: names that `function` may have.
+        signals: by the names that `signal` may have.
+        functions: by the names that `function` may have.
     """
 
-    signals: Collection[str]
-    functions: Collection[str]
+    signals: Mapping[str, Measurable]
+    functions: Mapping[str, Measurable]
 
 
 class _Versioned(msgspec.Struct):
@@ -175,6 +186,20 @@ def _check_measure(measure: Measure, where: str, vocabulary: Vocabulary) -> None
     for kind, name, known in (("signal", measure.signal, vocabulary.signals), ("function", measure.function, vocabulary.functions)):
         if name is not UNSET and name not in known:
             raise UserError(f"{where}: there is no {kind} '{name}'; docs/measures.md has all, {_nearest(name, known)}")
+    if isinstance(measure, Shown):
+        _check_unit(measure, where, vocabulary)
+
+
+def _check_unit(shown: Shown, where: str, vocabulary: Vocabulary) -> None:
+    if shown.signal is not UNSET:
+        name, unit = shown.signal, "s" if shown.take.startswith("time_") else vocabulary.signals[shown.signal].unit
+    else:
+        name = str(shown.function)
+        unit = vocabulary.functions[name].unit
+    if unit not in get_args(ShownUnit):
+        raise UserError(f"{where}: {name} is in {unit}, for which the page has no word; show another measure")
+    if shown.unit != unit:
+        raise UserError(f"{where}: `unit` is {shown.unit}, but {name} is in {unit}; write unit = '{unit}'")
 
 
 def _nearest(name: str, known: Collection[str]) -> str:

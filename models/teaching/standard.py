@@ -36,6 +36,9 @@ FRAME_S: Final = 1 / RATE_HZ
 UNIT_M: Final = 0.0005
 LONGEST_S: Final = 20.0
 """Nothing that is taught as one movement takes longer."""
+BEFORE_S: Final = 0.2
+AFTER_S: Final = 0.15
+"""A performance begins so long before its start and ends so long after its end, as far as that is known."""
 _UNKNOWN: Final = -(2**15)
 _FARTHEST_M: Final = UNIT_M * (2**15 - 2)
 _UNKNOWN_SPREAD: Final = 2**16 - 1
@@ -114,6 +117,12 @@ class Standard:
     def moments_s(self) -> Moments:
         """Keyframes of `performance`."""
         return self.performance.moments_s
+
+
+def same_instants(times_s: Float, ours: Moments, theirs: Moments) -> Float:
+    """Instants of a performance in another one: even between keyframes, at the same pace before the first and after the last."""
+    inside = np.interp(times_s, ours, theirs)
+    return np.asarray(inside + np.minimum(times_s - ours[0], 0.0) + np.maximum(times_s - ours[-1], 0.0))
 
 
 def encode(standard: Standard) -> bytes:

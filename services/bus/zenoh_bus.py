@@ -60,25 +60,34 @@ def open_router(endpoint: str) -> ZenohBus:
         ) from error
 
 
-def open_client(endpoint: str, stop: threading.Event) -> ZenohBus | None:
-    """Connect to the router at `endpoint`, trying until it is there; None if `stop` was set before.
+def try_client(endpoint: str, answers_within_s: float = 10.0) -> ZenohBus | None:
+    """Connect to the router at `endpoint`; None if it is not there, or does not answer in time.
 
     Once connected, a link that breaks is mended by Zenoh itself, with all subscriptions and tokens.
     """
     configuration = {
         "mode": "client",
         "connect/endpoints": [endpoint],
-        # A session that waits in `open` cannot be told to stop, hence no time limit there and the loop here.
+        # A session that waits in `open` cannot be told to stop, hence no time limit there and a loop outside.
         "connect/timeout_ms": 0,
+        "transport/unicast/open_timeout": round(1000 * answers_within_s),
         "connect/retry": {"period_init_ms": 100, "period_max_ms": 400, "period_increase_factor": 2.0},
     }
+    try:
+        return ZenohBus(zenoh.open(_configuration(configuration)))
+    except zenoh.ZError:
+        return None
+
+
+def open_client(endpoint: str, stop: threading.Event) -> ZenohBus | None:
+    """Connect as `try_client` does, trying until the router is there; None if `stop` was set before."""
     wait_s = _RETRY_FIRST_S
     while not stop.is_set():
-        try:
-            return ZenohBus(zenoh.open(_configuration(configuration)))
-        except zenoh.ZError:
-            stop.wait(wait_s)
-            wait_s = min(2 * wait_s, _RETRY_LONGEST_S)
+        bus = try_client(endpoint)
+        if bus is not None:
+            return bus
+        stop.wait(wait_s)
+        wait_s = min(2 * wait_s, _RETRY_LONGEST_S)
     return None
 
 

@@ -1,16 +1,18 @@
 """`kinebox export`: a recorded lesson's motion, or one attempt of it, for other programs."""
 
 import errno
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import typer
 
 from models.errors import UserError
+from models.messages.pupil import NOBODY
+from services.cli.attempt_number import attempt_in, require_attempt, told
 from services.cli.duration import clock
 from services.cli.lesson_attempts import attempts_of, recorded_feedbacks
 from services.cli.progress import ProgressLine
+from services.cli.pupil_option import written
 from services.evaluation.track import Track
 from services.lesson.export.formats import files_of
 from services.lesson.export.kinds import Format
@@ -18,11 +20,9 @@ from services.lesson.export.take import Take, TakeError
 from services.lesson.layout import SUFFIX
 from services.lesson.lesson_reader import Lesson, open_lesson
 from services.lesson.replay import configuration
-from services.lesson.stretches import Stretch, stretches
+from services.lesson.stretches import LessonAttempt, Stretch, stretches
 from services.logs.printable import printable
 from services.support.new_file import write_new
-
-_LONGEST_CODE = 40
 
 
 @dataclass(frozen=True)
@@ -33,13 +33,15 @@ class Order:
         kind: the format.
         folder: where to; it is made if it is not there.
         attempt: of the lesson's attempts, counted from 1 as `kinebox report` does; all of the lesson if None.
-        pupil: code that is put into the files.
+        pupil: code that is put into the files; of one attempt, whose it was if this is empty.
+        again: attempts are those that evaluation finds now, whatever was said on the day.
     """
 
     kind: Format
     folder: Path
     attempt: int | None = None
-    pupil: str = ""
+    pupil: str = NOBODY
+    again: bool = False
 
 
 def export(file: Path, data: Path, site: Path | None, order: Order) -> None:
@@ -55,12 +57,18 @@ def export(file: Path, data: Path, site: Path | None, order: Order) -> None:
         UserError: the pupil has no code that can be written, the file is no lesson that can be read, there is nothing in it to
             export, there is no such attempt, or it cannot be written; nothing was written then, or only files before it, whole.
     """
-    if not (order.pupil.isprintable() and len(order.pupil) <= _LONGEST_CODE):
-        raise UserError(f"--pupil: a code has at most {_LONGEST_CODE} characters that can be printed; choose another")
+    pupil = NOBODY if order.pupil == NOBODY else written(order.pupil)
     name = file.name.removesuffix(SUFFIX)
     with open_lesson(file) as lesson, ProgressLine() as progress:
-        found = _stretches(lesson, data, site, progress, evaluate=order.attempt is not None)
-    takes = _all(found, name, order.pupil, file) if order.attempt is None else [_one(found, order.attempt, name, order.pupil, file)]
+        found = _stretches(lesson, data, site, progress, order)
+        header = lesson.header
+    if order.attempt is None:
+        takes = _all(found, name, pupil, file)
+        said = [f"{_size(take)}, {len(take.attempts)} attempt{'' if len(take.attempts) == 1 else 's'}" for take in takes]
+    else:
+        stretch, each = attempt_in(found, order.attempt, file, "export another")
+        takes = [_one(stretch, each, name, pupil, file)]
+        said = [f"{_size(takes[0])}, attempt {each.number}: {told(header, each)}"]
     files: dict[Path, bytes] = {}
     for take in takes:
         try:
@@ -68,23 +76,25 @@ def export(file: Path, data: Path, site: Path | None, order: Order) -> None:
         except TakeError as error:
             raise UserError(f"{take.name} of lesson {file} {error}; choose trc or c3d, which need no bones") from error
     _write(files, order.folder)
-    for take in takes:
-        typer.echo(printable(f"{order.folder / f'{take.name}.{order.kind}'}: {_told(take)}"))
+    for take, what in zip(takes, said, strict=True):
+        typer.echo(printable(f"{order.folder / f'{take.name}.{order.kind}'}: {what}"))
 
 
-def _stretches(lesson: Lesson, data: Path, site: Path | None, progress: ProgressLine, *, evaluate: bool) -> list[Stretch]:
-    """Attempts are those that were told on the day; if there are none and `evaluate`, those that are found now."""
+def _stretches(lesson: Lesson, data: Path, site: Path | None, progress: ProgressLine, order: Order) -> list[Stretch]:
+    """With the attempts that were told on the day; if one is asked for and there are none, or `again`, with those found now."""
     frame_s = configuration(lesson.header.preset).frame_s
     lesson.require_entries()
-    feedbacks = recorded_feedbacks(lesson)
+    feedbacks = () if order.again else recorded_feedbacks(lesson)
 
     def watch(t_ns: int) -> None:
         progress.show(f"read {clock(max(t_ns - lesson.header.started_ns, 0) * 1e-9)}")
 
-    if evaluate and not feedbacks:
-        feedbacks = attempts_of(lesson, data, site, progress).feedbacks
-    found = stretches(lesson.parts(), frame_s, feedbacks, watch)
-    if not found:
+    if order.again or (order.attempt is not None and not feedbacks):
+        feedbacks = attempts_of(lesson, data, site, progress, again=order.again).feedbacks
+    if order.attempt is not None:
+        require_attempt(range(1, len(feedbacks) + 1), order.attempt, lesson.path, "leave out --attempt")
+    found = stretches(lesson.parts(), frame_s, feedbacks, watch, only=order.attempt)
+    if not found and order.attempt is None:
         raise UserError(f"lesson {lesson.path} holds no motion: it ended too early; export a longer one")
     return found
 
@@ -104,18 +114,11 @@ def _all(found: list[Stretch], name: str, pupil: str, file: Path) -> list[Take]:
     return takes
 
 
-def _one(found: list[Stretch], attempt: int, name: str, pupil: str, file: Path) -> Take:
-    numbers = [each.number for stretch in found for each in stretch.attempts]
-    for stretch in found:
-        for each in stretch.attempts:
-            if each.number == attempt:
-                try:
-                    return _take(stretch.of_attempt(each), f"{name}-attempt{attempt}", pupil)
-                except TakeError as error:
-                    raise UserError(f"attempt {attempt} of lesson {file} {error}; export another") from error
-    if not numbers:
-        raise UserError(f"lesson {file} holds no attempts that were found; leave out --attempt")
-    raise UserError(f"lesson {file} has no attempt {attempt}; it has {_ranges(numbers)}")
+def _one(stretch: Stretch, attempt: LessonAttempt, name: str, pupil: str, file: Path) -> Take:
+    try:
+        return _take(stretch.of_attempt(attempt), f"{name}-attempt{attempt.number}", pupil or attempt.pupil)
+    except TakeError as error:
+        raise UserError(f"attempt {attempt.number} of lesson {file} {error}; export another") from error
 
 
 def _take(stretch: Stretch, name: str, pupil: str) -> Take:
@@ -129,23 +132,8 @@ def _take(stretch: Stretch, name: str, pupil: str) -> Take:
     return Take(moved, name, pupil, tuple(attempts))
 
 
-def _ranges(numbers: list[int]) -> str:
-    """1-4, 6: whole numbers that rise."""
-
-    def spans() -> Iterator[str]:
-        first = last = numbers[0]
-        for number in [*numbers[1:], -1]:
-            if number != last + 1:
-                yield f"{first}-{last}" if last > first else f"{first}"
-                first = number
-            last = number
-
-    return ", ".join(spans())
-
-
-def _told(take: Take) -> str:
-    attempts = len(take.attempts)
-    return f"{len(take.track)} frames, {clock(len(take.track) / take.rate_hz)}, {attempts} attempt{'' if attempts == 1 else 's'}"
+def _size(take: Take) -> str:
+    return f"{len(take.track)} frames, {clock(len(take.track) / take.rate_hz)}"
 
 
 def _write(files: dict[Path, bytes], folder: Path) -> None:

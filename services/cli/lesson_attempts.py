@@ -1,6 +1,7 @@
 """The attempts of a recorded lesson: those that were told on the day, or what evaluation makes of its motion now."""
 
-from collections.abc import Iterable, Iterator
+from collections import deque
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,10 +17,11 @@ from models.teaching.schema import Teaching
 from services.cli.duration import clock
 from services.cli.progress import ProgressLine
 from services.evaluation.config import VOCABULARY, WHICHEVER, EvaluationConfig
-from services.evaluation.pipeline import initial_state, step
+from services.evaluation.pipeline import EvaluationOutput, finish, initial_state, step
 from services.evaluation.report.document import Source
 from services.lesson.lesson_header import LessonHeader
-from services.lesson.lesson_reader import Lesson, LessonPart
+from services.lesson.lesson_reader import Lesson
+from services.lesson.pupils import attempts_told, turns_of
 from services.lesson.replay import decode
 from services.logs.printable import printable
 from services.site_file.migration import migrated_text
@@ -36,12 +38,14 @@ class Attempts:
         source: "recorded" if they were told on the day.
         taught: what the site says about teaching.
         teachings: by action.
+        own: the school's own folder, if there is one here.
     """
 
     feedbacks: tuple[Feedback, ...]
     source: Source
     taught: Taught
     teachings: dict[str, Teaching]
+    own: Path | None
 
 
 def attempts_of(lesson: Lesson, data: Path, site: Path | None, progress: ProgressLine, *, again: bool = False) -> Attempts:
@@ -62,35 +66,47 @@ def attempts_of(lesson: Lesson, data: Path, site: Path | None, progress: Progres
     teachings = load_teachings(own, VOCABULARY)
     recorded = () if again else recorded_feedbacks(lesson)
     if recorded:
-        return Attempts(recorded, "recorded", taught, teachings)
+        return Attempts(recorded, "recorded", taught, teachings, own)
     config = EvaluationConfig(teachings, load_standards(own), _activity(taught, teachings))
-    return Attempts(_evaluated(lesson, config, progress), "evaluated", taught, teachings)
+    return Attempts(_evaluated(lesson, config, progress), "evaluated", taught, teachings, own)
 
 
 def recorded_feedbacks(lesson: Lesson) -> tuple[Feedback, ...]:
-    """What was told on the day; UserError if it cannot be read."""
-    return tuple(decode(entry, Feedback) for entry in _entries(lesson.parts()) if entry.kind == "feedback")
+    """What was told on the day, with pupils as corrected since; UserError if it cannot be read."""
+    return attempts_told(lesson.parts())
 
 
 def _evaluated(lesson: Lesson, config: EvaluationConfig, progress: ProgressLine) -> tuple[Feedback, ...]:
-    state = initial_state(config)
     found: list[Feedback] = []
+    for output in _outputs(lesson, config, progress):
+        if output.failure is not None:
+            _note(f"an attempt could not be judged and is left out ({type(output.failure).__name__}: {output.failure})")
+        if output.feedback is not None:
+            found.append(output.feedback)
+    return tuple(found)
+
+
+def _outputs(lesson: Lesson, config: EvaluationConfig, progress: ProgressLine) -> Iterator[EvaluationOutput]:
+    """What the evaluation makes of each motion, and at last of the lesson's end."""
+    state = initial_state(config)
+    turns = deque(turns_of(lesson.parts()))
     motions = 0
-    for entry in _entries(lesson.parts()):
+    for entry in _entries(lesson):
         if entry.kind != "motion":
             continue
         motions += 1
         progress.show(f"evaluated {clock(max(entry.t_ns - lesson.header.started_ns, 0) * 1e-9)}")
+        while turns and turns[0].t_ns <= entry.t_ns:
+            state, _ = step(state, turns.popleft(), config)
         state, output = step(state, decode(entry, Motion), config)
-        if output.feedback is not None:
-            found.append(output.feedback)
+        yield output
     if not motions:
         raise UserError(f"lesson {lesson.path} holds no motion: it ended too early; report a longer one")
-    return tuple(found)
+    yield finish(state, config)
 
 
-def _entries(parts: Iterable[LessonPart]) -> Iterator[Entry]:
-    return (entry for part in parts for entry in part.entries)
+def _entries(lesson: Lesson) -> Iterator[Entry]:
+    return (entry for part in lesson.parts() for entry in part.entries)
 
 
 def _taught(header: LessonHeader, site: Path | None) -> Taught:
@@ -100,7 +116,7 @@ def _taught(header: LessonHeader, site: Path | None) -> Taught:
     try:
         return decode_site(migrated_text(header.site_toml.encode(), "of the lesson").new.encode(), "of the lesson").evaluation
     except UserError as error:
-        _note(f"{error}; reported by what KineBox brings")
+        _note(f"{error}; taken as if it said nothing of teaching")
         return Taught()
 
 
@@ -111,7 +127,7 @@ def _own(data: Path, taught: Taught, *, strict: bool) -> Path | None:
         if strict:
             raise
         # The lesson may come from another box.
-        _note(f"{error}; reported by what KineBox brings")
+        _note(f"{error}; what KineBox brings counts")
         return None
 
 

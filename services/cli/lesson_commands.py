@@ -91,7 +91,12 @@ def export(
     kind: Annotated[Format, typer.Option("--format", help="What the other program reads.", show_default=False)],
     out: Annotated[Path, typer.Option(help="The folder to write into.", file_okay=False)] = Path(),
     attempt: Annotated[int | None, typer.Option(min=1, help="Only the lesson's attempt of this number.", metavar="N")] = None,
-    pupil: Annotated[str, typer.Option(help="The pupil's code, to stand in the files.")] = "",
+    pupil: Annotated[
+        str, typer.Option(help="The pupil's code, to stand in the files; of one attempt, the lesson's if left out.")
+    ] = "",
+    again: Annotated[
+        bool, typer.Option("--again", help="Attempts are those that are found by what is taught today.", show_default=False)
+    ] = False,
     data: DataFolder = Path("build"),
     site: LessonSite = None,
 ) -> None:
@@ -103,7 +108,7 @@ def export(
     from services.cli.export import Order  # noqa: PLC0415
     from services.cli.export import export as write  # noqa: PLC0415
 
-    write(lessons.find(lesson, lessons.folder_of(data, site)), data, site, Order(kind, out, attempt, pupil))
+    write(lessons.find(lesson, lessons.folder_of(data, site)), data, site, Order(kind, out, attempt, pupil, again))
 
 
 def report(

@@ -1,6 +1,5 @@
 """`kinebox lessons`: what has been recorded; finding one, and removing one."""
 
-import datetime as dt
 import sys
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from models.errors import UserError
 from services.cli.duration import clock
 from services.lesson.index import NAME, LessonIndex, LessonRow
 from services.lesson.layout import PART_SUFFIX, SUFFIX
+from services.lesson.local_time import local_time
 from services.lesson.readable_names import readable
 from services.logs.printable import printable
 from services.site_file.reading import read_site
@@ -47,7 +47,7 @@ def listed(folder: Path, *, json: bool) -> None:
     for column in ("title", "begun", "length", "MB", "state", "gaps"):
         table.add_column(column, justify="right" if column in {"length", "MB", "gaps"} else "left")
     for row in rows:
-        begun = f"{_begun(row):%Y-%m-%d %H:%M}"
+        begun = f"{local_time(row.started_s):%Y-%m-%d %H:%M}"
         table.add_row(
             printable(row.lesson),
             printable(row.title),
@@ -102,17 +102,13 @@ def delete(lesson: str, folder: Path, *, sure: bool) -> None:
     typer.echo(f"removed {printable(str(file))}")
 
 
-def _begun(row: LessonRow) -> dt.datetime:
-    return dt.datetime.fromtimestamp(row.started_s, tz=dt.UTC).astimezone()
-
-
 def _entry(folder: Path, row: LessonRow) -> dict[str, object]:
     """A lesson as programs read it."""
     suffix = PART_SUFFIX if row.state in {"recording", "unfinished"} else SUFFIX
     return {
         "lesson": row.lesson,
         "title": row.title,
-        "begun": _begun(row).isoformat(timespec="seconds"),
+        "begun": local_time(row.started_s).isoformat(timespec="seconds"),
         "seconds": round(row.seconds, 3),
         "bytes": row.bytes,
         "state": row.state,

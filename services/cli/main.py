@@ -16,7 +16,7 @@ except Exception as error:  # noqa: BLE001 - whatever a broken package raises; w
         UserError(f"package typer cannot be imported ({error}); run `make setup`; if it stays so, delete .venv and run it again")
     )
 
-from services.cli import lesson_commands, log_commands, simulate_command
+from services.cli import lesson_commands, log_commands, simulate_command, standard_commands
 
 SiteFile = Annotated[Path, typer.Option("--site", help="The site file.", dir_okay=False)]
 SiteFileArgument = Annotated[Path, typer.Argument(metavar="FILE", help="The site file.", dir_okay=False)]
@@ -33,6 +33,7 @@ app.add_typer(config_app, name="config")
 lesson_commands.add_to(app)
 log_commands.add_to(app)
 simulate_command.add_to(app)
+standard_commands.add_to(app)
 
 
 def main() -> None:

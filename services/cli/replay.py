@@ -18,6 +18,7 @@ from services.site_file.migration import migrated_text
 from services.site_file.rendering import render
 from services.supervisor.supervise import supervise
 from services.support.listening import listen
+from services.support.teaching_files import own_folder
 
 _HERE = "127.0.0.1"
 _CALIBRATION = "rig.toml"
@@ -63,8 +64,7 @@ def replay_site(header: LessonHeader, page: TabletConfig, data: Path) -> Site:
         UserError: this KineBox cannot read it.
     """
     recorded = decode_site(migrated_text(header.site_toml.encode(), "of the lesson").new.encode(), "of the lesson")
-    own = recorded.evaluation.teaching
-    evaluation = EvaluationConfig(language=recorded.evaluation.language, teaching=own if (data / own).is_dir() else "")
+    evaluation = EvaluationConfig(language=recorded.evaluation.language, teaching=_own(data, recorded.evaluation.teaching))
     return msgspec.structs.replace(
         recorded,
         evaluation=evaluation,
@@ -73,6 +73,14 @@ def replay_site(header: LessonHeader, page: TabletConfig, data: Path) -> Site:
         tablet=page,
         supervisor=msgspec.structs.replace(recorded.supervisor, spares=False),
     )
+
+
+def _own(data: Path, teaching: str) -> str:
+    """Empty if there is no such folder here, or it is none of the data folder's."""
+    try:
+        return "" if own_folder(data, teaching) is None else teaching
+    except UserError:
+        return ""
 
 
 def _require_port(page: TabletConfig) -> None:

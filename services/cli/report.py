@@ -1,6 +1,5 @@
 """`kinebox report`: what stays of a lesson's attempts, for programs, the gradebook, or on paper."""
 
-import datetime as dt
 import errno
 import sys
 from collections.abc import Callable
@@ -14,7 +13,9 @@ from models.errors import UserError
 from models.teaching.schema import Language
 from services.cli.lesson_attempts import attempts_of
 from services.cli.progress import ProgressLine
+from services.cli.pupil_option import sought
 from services.evaluation.report import csv_file, json_file, page
+from services.evaluation.report.sheet import NOBODY as NOBODY_ON_PAPER
 from services.evaluation.report.sheet import LessonFacts, Sheet, Tried, sheet_of
 from services.lesson.layout import SUFFIX
 from services.lesson.lesson_reader import open_lesson
@@ -75,6 +76,7 @@ def write_report(file: Path, data: Path, site: Path | None, order: Order, out: P
 
 def sheet(file: Path, data: Path, site: Path | None, order: Order) -> Sheet:
     """The report of a lesson's file; UserError as for `write_report`."""
+    wanted = None if order.pupil is None else sought(order.pupil)
     with open_lesson(file) as lesson, ProgressLine() as progress:
         lesson.require_entries()
         attempts = attempts_of(lesson, data, site, progress, again=order.again)
@@ -82,14 +84,17 @@ def sheet(file: Path, data: Path, site: Path | None, order: Order) -> Sheet:
         facts = LessonFacts(
             name=file.name.removesuffix(SUFFIX),
             title=header.title,
-            begun=dt.datetime.fromtimestamp(header.started_s, tz=dt.UTC).astimezone(),
+            begun=header.begun,
             begun_ns=header.started_ns,
             seconds=lesson.summary().seconds,
             kinebox=header.kinebox,
             source=attempts.source,
         )
     language = attempts.taught.language if order.language is None else _require("language", order.language, LANGUAGES)
-    return sheet_of(facts, [Tried(feedback) for feedback in attempts.feedbacks], attempts.teachings, language, order.pupil)
+    tried = [Tried(feedback, feedback.pupil or NOBODY_ON_PAPER) for feedback in attempts.feedbacks]
+    held = {one.pupil for one in tried}
+    pupil = None if wanted is None else next((code for code in wanted if code in held), wanted[-1])
+    return sheet_of(facts, tried, attempts.teachings, language, pupil)
 
 
 def _require(what: str, given: str, known: tuple[Choice, ...]) -> Choice:

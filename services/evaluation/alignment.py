@@ -6,7 +6,7 @@ word recognition", IEEE Trans. ASSP 26(1), 1978). `Spring` finds, frame by frame
 the templates have frames, however long the stream is.
 
 Unknown joints have no part: what the known ones are apart is counted for them as well. Frames that share no known joint are apart
-by nothing.
+by nothing; `align` leaves none without any.
 """
 
 from collections.abc import Iterator, Sequence
@@ -19,7 +19,8 @@ import numpy as np
 from models.arrays import Float
 from models.compiled import Counts, compiled
 from models.teaching.standard import FRAME_S, Standard
-from services.evaluation.normalise import Placing, placed, placing_of
+from services.evaluation.following import bridged, follow
+from services.evaluation.normalise import Placing, PlacingError, placed, placing_of
 from services.evaluation.track import Track
 
 BAND: Final = 0.35
@@ -50,13 +51,16 @@ class AlignedTrack:
     """An attempt along its standard.
 
     Attributes:
-        alignment: of the attempt's frames with the standard's.
+        alignment: of the attempt's frames with the standard's, and what they are apart on the whole.
+        frames: (T,) the one moment of the standard that each frame of the attempt is compared with and shown beside, in its frames
+            (`services.evaluation.following`).
         placing: how the attempt was brought into the standard's frame.
         joints_m: (T, 17, 3) the attempt there (`services.evaluation.normalise.placed`).
         standard_m: (S, 17, 3) the standard, the middle of the hips above the origin as well.
     """
 
     alignment: Alignment
+    frames: Float
     placing: Placing
     joints_m: Float
     standard_m: Float
@@ -68,13 +72,16 @@ def align(track: Track, standard: Standard, band: float = BAND) -> AlignedTrack 
     Returns:
         None if the track has no frame, or does not show how the pupil stands and how tall he is.
     """
-    own = placing_of(standard.joints_m, FRAME_S, 1.0)
-    placing = None if own is None or not len(track) else placing_of(track.joints_m, track.frame_s, 1.0 / own.scale)
-    if own is None or placing is None:
+    try:
+        own = placing_of(standard.joints_m, FRAME_S, 1.0)
+        placing = placing_of(track.joints_m, track.frame_s, 1.0 / own.scale)
+    except PlacingError:
         return None
     joints, theirs = placed(track.joints_m, placing), placed(standard.joints_m, replace(own, scale=1.0))
     radius = int(np.ceil(band * max(len(joints), len(theirs))))
-    return AlignedTrack(warp(joints, theirs, radius), placing, joints, theirs)
+    # What was not seen at all lies between what was: else the path would hide there whatever it finds no other place for.
+    one, other = bridged(joints), bridged(theirs)
+    return AlignedTrack(warp(one, other, radius), follow(one, other, track.frame_s), placing, joints, theirs)
 
 
 def warp(ours: Float, theirs: Float, radius: int | None = None) -> Alignment:
@@ -110,11 +117,11 @@ class Spring:
         """(N,) frames of each template."""
         self.reset()
 
-    def reset(self) -> None:
-        """Forget the stream; the next frame is number 0 again."""
+    def reset(self, count: int = 0) -> None:
+        """Forget the stream; the next frame is number `count`."""
         self._costs = np.full(len(self._frames), np.inf)
         self._starts = np.full(len(self._frames), -1)
-        self._count = 0
+        self._count = count
 
     @property
     def costs(self) -> Float:

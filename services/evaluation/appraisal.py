@@ -8,9 +8,11 @@ import numpy as np
 from models.arrays import Float, UInt8
 from models.messages.feedback import Colour, Feedback, MeasureResult, Verdict
 from models.messages.motion import JointState
+from models.messages.pupil import NOBODY
 from models.skeleton import coco
-from models.teaching.schema import Shown
+from models.teaching.schema import Shown, Teaching
 from models.teaching.standard import FRAME_S, Standard
+from services.evaluation.agreement import beside_cue
 from services.evaluation.alignment import align
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.beside import standard_beside
@@ -54,7 +56,12 @@ class Moments:
 
 
 def appraise(
-    track: Track, attempt: FoundAttempt, by: Literal["recognised", "chosen"], moments: Moments, config: EvaluationConfig
+    track: Track,
+    attempt: FoundAttempt,
+    by: Literal["recognised", "chosen"],
+    moments: Moments,
+    config: EvaluationConfig,
+    pupil: str = NOBODY,
 ) -> Feedback:
     """Judge an attempt.
 
@@ -64,6 +71,7 @@ def appraise(
         by: how it is known what was tried.
         moments: of the track's clock.
         config: what is taught.
+        pupil: code of whose attempt it is.
 
     Returns:
         With `t_published_ns` the newest instant. Its frames are those of the attempt, with as much around it as the standard has.
@@ -73,16 +81,17 @@ def appraise(
         ValueError: the track has fewer than two frames of the attempt.
     """
     teaching, standard = config.teachings[attempt.action], config.standards[attempt.action]
-    reading = Reading(track, attempt.handed)
-    judgements = judge(teaching, reading, attempt)
-    said = choose(teaching, judgements)
-    measures = tuple(_result(shown, evaluate(shown, reading, attempt)) for shown in teaching.shown)
+    # By keyframes that nobody saw nothing is measured.
+    reading = Reading(track if attempt.timed else track.hidden(), attempt.handed)
+    judgements, measured = judge(teaching, reading, attempt), measures_of(teaching, reading, attempt)
+    said = choose(teaching, judgements, measured)
+    measures = beside_cue(teaching, said.cue, measured)
 
     shown = _shown(track, attempt, standard)
     if len(shown) < 2:
         raise ValueError(f"of an attempt at {attempt.moments_s} the track of {len(track)} frames has {len(shown)}")
     led = lead_right(shown, attempt.handed)
-    aligned = align(led, standard)
+    aligned = align(led, standard) if attempt.timed else None
     deviation = None if aligned is None else deviate(aligned, led, standard, teaching.tolerance)
     beside = np.full_like(shown.joints_m, np.nan) if aligned is None else standard_beside(aligned, led, attempt.handed)
     points = score(teaching, judgements, deviation)
@@ -111,20 +120,26 @@ def appraise(
         states=shown.states,
         colours=_colours(deviation, shown, attempt),
         standard_m=beside.astype(np.float32),
+        pupil=pupil,
+        fine=said.fine,
     )
 
 
 def verdict_of(measured: Measured, low: float, high: float) -> Verdict:
-    """What a teacher would say: surely good or not, or unknown where the error is as wide as what is good."""
+    """What a teacher would say, in doubt for the pupil; unknown where the error is as wide as half of what is good."""
     width = high - low
     if not measured.known or measured.sigma > width / 2:
         return "unknown"
     outside = max(low - measured.value, measured.value - high, 0.0)
-    # In doubt for the pupil.
     beyond = outside - measured.sigma
     if beyond <= 0:
         return "good" if outside == 0 else "fair"
     return "fair" if beyond <= FAIR_SHARE * width else "poor"
+
+
+def measures_of(teaching: Teaching, reading: Reading, attempt: FoundAttempt) -> tuple[MeasureResult, ...]:
+    """Those that the page shows, in the file's order, each by itself."""
+    return tuple(_result(shown, evaluate(shown, reading, attempt)) for shown in teaching.shown)
 
 
 def _result(shown: Shown, measured: Measured) -> MeasureResult:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from models.arrays import Float
+from models.interpolation import between
 from models.motions.motion import Handed
 from services.evaluation.alignment import AlignedTrack
 from services.evaluation.normalise import mirrored, root_m
@@ -18,21 +19,13 @@ def standard_beside(aligned: AlignedTrack, track: Track, handed: Handed) -> Floa
         handed: the side that led before that.
 
     Returns:
-        (T, 17, 3) the standard at the frame that the path gives for each frame of the track, the middle of its hips above or below
+        (T, 17, 3) the standard at the moment that each frame of the track is compared with, the middle of its hips above or below
         the pupil's; between two frames where his are not known. NaN where the standard is not known, or he nowhere.
     """
-    standard = aligned.standard_m[_along(aligned)]
+    standard = between(aligned.standard_m, aligned.frames)
     placed = standard @ np.linalg.inv(aligned.placing.matrix).T
     placed[..., :2] += _centres(track)[:, None]
     return mirrored(placed) if handed == "left" else placed
-
-
-def _along(aligned: AlignedTrack) -> "np.ndarray[tuple[int], np.dtype[np.int64]]":
-    """(T,) the standard's frame for each of the pupil's: the middle one of those that the path gives."""
-    ours, theirs = aligned.alignment.path[:, 0], aligned.alignment.path[:, 1]
-    frames = np.arange(len(aligned.joints_m))
-    first, last = np.searchsorted(ours, frames), np.searchsorted(ours, frames, side="right") - 1
-    return np.asarray((theirs[first] + theirs[last]) // 2)
 
 
 def _centres(track: Track) -> Float:

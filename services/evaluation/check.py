@@ -7,12 +7,16 @@ brings: where nothing was changed there is nothing to read.
 from pathlib import Path
 
 from models.camera.rig import Rig
-from models.config.site import Site
+from models.config.site import SCHOOL_FOLDER, EvaluationConfig, Site
 
 
 def check(site: Site, _rig: Rig, data: Path) -> None:
-    """Read all that is taught, if the site file says anything of it; UserError names the file and what is wrong."""
-    if site.evaluation == type(site.evaluation)():
+    """Read all that is taught, if the site file or a folder of the school's own says anything of it.
+
+    Raises:
+        UserError: names the file and what is wrong.
+    """
+    if site.evaluation == EvaluationConfig() and not (data / SCHOOL_FOLDER).is_dir():
         return
     from services.evaluation.taught import configuration  # noqa: PLC0415 - see above
 

@@ -11,7 +11,7 @@ from models.teaching.standard import FRAME_S, Standard
 from services.evaluation.measures.catalogue import FUNCTIONS
 from services.evaluation.signals.catalogue import CATALOGUE
 
-VOCABULARY: Final = Vocabulary(tuple(CATALOGUE), tuple(FUNCTIONS))
+VOCABULARY: Final = Vocabulary(CATALOGUE, FUNCTIONS)
 """Of what the measures of a teaching file may be made."""
 WHICHEVER: Final = "any"
 """In the site file, in the place of an action's name."""

@@ -11,12 +11,14 @@ from typing import Final
 import numpy as np
 
 from models.arrays import Float, UInt8
-from models.compiled import Counts
+from models.interpolation import between
 from models.messages.feedback import Colour
 from models.skeleton import coco
 from models.teaching.schema import Tolerance
 from models.teaching.standard import Standard
 from services.evaluation.alignment import AlignedTrack
+from services.evaluation.normalise import size_m
+from services.evaluation.signals.reading import rate
 from services.evaluation.track import Track
 from services.evaluation.uncertainty import NETWORK, Uncertainty
 
@@ -28,6 +30,8 @@ TOO_UNCERTAIN: Final = 0.75
 """A joint whose error is larger than this share of its limit is grey."""
 _HEAD: Final = ("nose", "eye", "ear")
 _HIPS: Final = (coco.INDEX["left_hip"], coco.INDEX["right_hip"])
+_LEFT: Final = (coco.INDEX["left_shoulder"], coco.INDEX["left_hip"])
+_RIGHT: Final = (coco.INDEX["right_shoulder"], coco.INDEX["right_hip"])
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,16 +62,13 @@ def deviate(
         tolerance: of the action.
         model: of the joints' errors.
     """
-    frames = _frames(aligned)
-    apart = aligned.joints_m[frames[:, 0]] - aligned.standard_m[frames[:, 1]]
+    apart = aligned.joints_m - between(aligned.standard_m, aligned.frames)
     metres = np.linalg.norm(apart, axis=2)
-    limits = np.fmax(tolerances_m(tolerance, standard.stature_m), SPREADS * standard.spread_m)[frames[:, 1]]
-    distances = metres / limits
-    # Of all frames of the standard that a frame of the pupil's is aligned with, the nearest counts: it is no fault to dwell.
-    distance, nearest = _least(distances, frames[:, 0], len(track))
+    limits = between(np.fmax(tolerances_m(tolerance, standard.stature_m), SPREADS * standard.spread_m), aligned.frames)
+    distance = metres / limits
     with np.errstate(invalid="ignore", divide="ignore"):
-        towards = apart[nearest, np.arange(coco.COUNT)] / metres[nearest, np.arange(coco.COUNT)][..., None]
-    sigma = _sigma_m(aligned, track, np.nan_to_num(towards), model) / limits[nearest, np.arange(coco.COUNT)]
+        towards = apart / metres[..., None]
+    sigma = _sigma_m(aligned, track, np.nan_to_num(towards), model) / limits
     sigma = np.where(np.isfinite(distance), sigma, np.nan)
     return Deviation(distance, sigma, colours_of(distance, sigma, track))
 
@@ -89,32 +90,29 @@ def tolerances_m(tolerance: Tolerance, stature_m: float) -> Float:
     return np.array([getattr(tolerance, "head" if part in _HEAD else part) for part in parts]) * stature_m / 100
 
 
-def _frames(aligned: AlignedTrack) -> Counts:
-    """(L, 2) pairs of frames of the attempt and the standard; each pair once, in the order of the attempt."""
-    return np.unique(aligned.alignment.path, axis=0).astype(np.int64)
-
-
-def _least(values: Float, rows: Counts, count: int) -> tuple[Float, Counts]:
-    """(count, J) least value of each row's entries, and its place among them; NaN where all are."""
-    filled = np.where(np.isnan(values), np.inf, values)
-    first = np.searchsorted(rows, np.arange(count))
-    least = np.minimum.reduceat(filled, first, axis=0)
-    places = np.empty(least.shape, np.int64)
-    for row in range(count):
-        end = first[row + 1] if row + 1 < count else len(rows)
-        places[row] = first[row] + filled[first[row] : end].argmin(axis=0)
-    return np.where(np.isinf(least), np.nan, least), places
-
-
 def _sigma_m(aligned: AlignedTrack, track: Track, towards: Float, model: Uncertainty) -> Float:
     """(T, 17) standard deviation of the distance along (T, 17, 3) unit vectors in the standard's frame."""
     turn = aligned.placing.matrix
     scales, landmarks = np.square(model.noise_scale)[:, None, None], np.square(model.landmark_m)[:, None, None]
     joints = scales * track.covariance_m2 + landmarks * np.eye(3)
-    hips = joints[:, _HIPS].sum(axis=1) / 4 * np.outer((1, 1, 0), (1, 1, 0))
-    # The middle of the hips is above the origin: its error moves all joints, but the hips themselves by half of it less.
+    # The middle of the hips is above the origin: its error moves all joints. Both hips are wrong alike: it is as large as theirs.
+    hips = joints[:, _HIPS].mean(axis=1) * np.outer((1, 1, 0), (1, 1, 0))
     covariance = turn @ (joints + hips[:, None]) @ turn.T
     along = np.einsum("tja,tjab,tjb->tj", towards, covariance, towards)
     # Where the distance is about nothing it has no direction, and the error is in all of them.
     nowhere = np.trace(covariance, axis1=2, axis2=3) / 3
+    for moved in _of_the_whole(aligned, track.frame_s, model):
+        along, nowhere = along + (towards * moved).sum(axis=2) ** 2, nowhere + (moved**2).sum(axis=2) / 3
     return np.asarray(np.sqrt(np.where((towards == 0).all(axis=2), nowhere, along)))
+
+
+def _of_the_whole(aligned: AlignedTrack, frame_s: float, model: Uncertainty) -> tuple[Float, Float, Float]:
+    """(T, 17, 3) each: how far every joint is moved by one standard deviation of where the body is taken to face, of how large it
+    is taken to be, and of when it is where it is."""
+    joints, scale = aligned.joints_m, aligned.placing.scale
+    width = float(np.nanmedian(np.linalg.norm(joints[:, _LEFT].sum(axis=1) - joints[:, _RIGHT].sum(axis=1), axis=1)))
+    errors = np.array(model.landmark_m)[:, None] * model.mixed
+    turn = scale * float(np.linalg.norm(errors[_LEFT, :].sum(axis=0) - errors[_RIGHT, :].sum(axis=0))) / width
+    ends = np.hypot(model.landmark_m[coco.INDEX["left_shoulder"]], model.landmark_m[coco.INDEX["left_ankle"]])
+    growth = scale * float(ends) / size_m(joints)
+    return turn * joints[..., [1, 0, 2]] * (-1.0, 1.0, 0.0), growth * joints, model.timing_s * np.nan_to_num(rate(joints, frame_s))

@@ -12,7 +12,7 @@ import numpy as np
 
 from models.arrays import Float
 from models.skeleton import coco
-from services.evaluation.normalise import facing, root_m
+from services.evaluation.normalise import MIRROR_FLIP, facing, root_m
 
 JOINTS: Final = tuple(coco.INDEX[name] for name in coco.NAMES if name == "nose" or name.partition("_")[2] not in {"", "eye", "ear"})
 """One point of the head, shoulders, elbows, wrists, hips, knees and ankles."""
@@ -24,6 +24,9 @@ _REMEMBERED_S: Final = 4.0
 """Of how much of the past the size is the median."""
 _UPPER: Final = np.array([[coco.INDEX[f"{side}_{name}"] for name in ("shoulder", "hip", "knee")] for side in ("left", "right")])
 _LOWER: Final = np.array([[coco.INDEX[f"{side}_{name}"] for name in ("hip", "knee", "ankle")] for side in ("left", "right")])
+_MIRROR: Final = [*(JOINTS.index(coco.MIRROR[joint]) for joint in JOINTS), COUNT - 1]
+_FORGOTTEN_S: Final = 1.0
+"""Whoever comes after nobody was there for so long may be another pupil."""
 _SIZE_EVERY: Final = 5
 """Frames after which the size is found anew."""
 
@@ -39,9 +42,14 @@ class Features:
         self._facing = np.full(2, np.nan)
         self._size = np.nan
         self._count = 0
+        self._gone, self._gone_at_most = 0, round(_FORGOTTEN_S / frame_s)
 
     def push(self, joints_m: Float) -> Float:
         """(COUNT, 3) of the next frame, (17, 3) joints in the world; NaN where unknown, everywhere until he is seen upright."""
+        self._gone = 0 if np.isfinite(joints_m).any() else self._gone + 1
+        if self._gone == self._gone_at_most:
+            self._sizes.clear()
+            self._size, self._facing = np.nan, np.full(2, np.nan)
         if self._count % _SIZE_EVERY == 0 or not self._size > 0:
             self.measure(joints_m)
         self._count += 1
@@ -74,3 +82,8 @@ def features_of(joints_m: Float, frame_s: float) -> Float:
     for joints in joints_m[::_SIZE_EVERY]:
         features.measure(joints)
     return np.stack([features.push(joints) for joints in joints_m])
+
+
+def mirrored_features(features: Float) -> Float:
+    """(..., COUNT, 3) of who does with the left what these do with the right; bit for bit those of the mirrored motion."""
+    return np.asarray(features[..., _MIRROR, :] * MIRROR_FLIP)

@@ -7,6 +7,7 @@ attempt anew, shifted as a whole at the attempt's tempo, and stays where it fits
 taken, each weighed by how well it fits.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,11 +16,13 @@ from typing import Final
 import numpy as np
 
 from models.arrays import Float
+from models.interpolation import between
 from models.teaching.standard import FRAME_S, Exemplar, Standard
 from services.evaluation.alignment import warp
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.features import JOINTS
-from services.evaluation.normalise import lead_right, placed, placing_of, size_m
+from services.evaluation.following import bridged
+from services.evaluation.normalise import Placing, PlacingError, lead_right, placed, placing_of, size_m
 from services.evaluation.track import Track
 
 BEFORE_S: Final = 0.4
@@ -81,7 +84,7 @@ def refine(track: Track, found: FoundAttempt, standards: Sequence[Standard]) -> 
 
 def keyframes_of(joints_m: Float, frame_s: float, standards: Sequence[Standard], action: str) -> Float | None:
     """(4,) frames of the keyframes of an attempt, (T, 17, 3) joints in the world of a pupil who leads with the right; None if they
-    do not show it, or no standard shows the action."""
+    show nowhere how large he is or to where he looks, are fewer than `room_for` says, or no standard shows the action."""
     said = [
         carried
         for standard in standards
@@ -93,16 +96,39 @@ def keyframes_of(joints_m: Float, frame_s: float, standards: Sequence[Standard],
         return None
     frames, weights = np.array([one[0] for one in said]), np.array([one[1] for one in said])
     together = np.array([_weighted_median(*pair) for pair in zip(frames.T, weights.T, strict=True)])
-    return _in_order(together, len(joints_m), _APART_S / frame_s)
+    return in_order(together, len(joints_m), frame_s) if len(joints_m) >= room_for(frame_s) else None
+
+
+def room_for(frame_s: float) -> int:
+    """So many frames it takes for the keyframes to follow one another."""
+    return math.ceil(3 * _APART_S / frame_s) + 1
+
+
+def in_order(frames: Float, count: int, frame_s: float) -> Float:
+    """(4,) keyframes within an attempt's `count` frames, which are at least `room_for`, each after the one before it."""
+    apart = _APART_S / frame_s
+    order = apart * np.arange(4)
+    # Each no sooner than the ones before it allow, and then no later than those after it do.
+    soonest = np.maximum.accumulate(np.maximum(frames, 0.0) - order) + order
+    return np.asarray(np.minimum(soonest, count - 1.0 - order[::-1]))
+
+
+def _placing(joints_m: Float, frame_s: float, to_size_m: float) -> Placing | None:
+    """Roughly: an attempt whose beginning was hidden is timed like any other."""
+    try:
+        return placing_of(joints_m, frame_s, to_size_m, math.inf)
+    except PlacingError:
+        return None
 
 
 def _carried(joints_m: Float, frame_s: float, model: _Model) -> tuple[Float, Float] | None:
     """(4,) keyframes of a performance in an attempt, and (4,) what they weigh."""
-    placing = placing_of(joints_m, frame_s, model.size_m)
+    placing = _placing(joints_m, frame_s, model.size_m)
     if placing is None:
         return None
     ours = placed(joints_m, placing)[:, JOINTS]
-    alignment = warp(ours, model.joints_m, int(np.ceil(_BAND * max(len(ours), len(model.joints_m)))))
+    radius = int(np.ceil(_BAND * max(len(ours), len(model.joints_m))))
+    alignment = warp(bridged(ours), bridged(model.joints_m), radius)
     frames = np.array([alignment.onto(frame) for frame in model.frames])
     slowness = (frames[-1] - frames[0]) / (model.frames[-1] - model.frames[0])
     pace = float(np.clip(slowness * frame_s / FRAME_S, *_TEMPO)) * FRAME_S / frame_s
@@ -123,9 +149,9 @@ def _laid_over(
 ) -> tuple[float, float]:
     """By how many frames to shift keyframe `number`, carried over to frame `at`, and the mean square of what remains a joint."""
     steps = np.arange(round(window_s[0] / FRAME_S), round(window_s[1] / FRAME_S) + 1)
-    theirs = _between(model.joints_m, model.frames[number] + steps)
+    theirs = between(model.joints_m, model.frames[number] + steps)
     shifts = np.arange(-farthest * _PER_FRAME, farthest * _PER_FRAME + 1) / _PER_FRAME
-    shown = _between(ours, at + shifts[:, None] + pace * steps)
+    shown = between(ours, at + shifts[:, None] + pace * steps)
     apart = shown - theirs
     known = np.isfinite(apart)
     counts = known.sum(axis=1)
@@ -153,24 +179,6 @@ def _weighted_median(values: Float, weights: Float) -> float:
     return float(np.interp(weights.sum() / 2, share, values[order]))
 
 
-def _between(joints: Float, frames: Float) -> Float:
-    """(..., K, 3) joints at frames between those that there are; before the first and after the last they stay."""
-    inside = np.clip(frames, 0, len(joints) - 1)
-    below = np.minimum(inside.astype(np.int64), max(len(joints) - 2, 0))
-    share = (inside - below)[..., None, None]
-    return np.asarray((1 - share) * joints[below] + share * joints[np.minimum(below + 1, len(joints) - 1)])
-
-
-def _in_order(frames: Float, count: int, apart: float) -> Float | None:
-    """Keyframes within the attempt's frames, each after the one before it; None if they do not find room."""
-    out = np.clip(frames, 0.0, count - 1.0)
-    for number in range(1, 4):
-        out[number] = max(out[number], out[number - 1] + apart)
-    for number in (3, 2, 1, 0):
-        out[number] = min(out[number], count - 1.0 - (3 - number) * apart if number == 3 else out[number + 1] - apart)
-    return out if out[0] >= 0 else None
-
-
 @lru_cache(maxsize=64)
 def _models(standard: Standard) -> tuple[_Model, ...]:
     """The performances of a standard that show a body."""
@@ -180,7 +188,7 @@ def _models(standard: Standard) -> tuple[_Model, ...]:
 
 def _model(exemplar: Exemplar) -> _Model | None:
     size = size_m(exemplar.joints_m)
-    placing = placing_of(exemplar.joints_m, FRAME_S, size) if size > 0 else None
+    placing = _placing(exemplar.joints_m, FRAME_S, size)
     if placing is None:
         return None
     joints = placed(exemplar.joints_m, placing)[:, JOINTS]

@@ -17,13 +17,20 @@ from services.evaluation.track import Track
 
 _LEFT_SHOULDER, _RIGHT_SHOULDER, _LEFT_HIP, _RIGHT_HIP = coco.TRUNK
 _MIRROR: Final = list(coco.MIRROR)
-_FLIP: Final = np.array((1.0, -1.0, 1.0))
+MIRROR_FLIP: Final = np.array((1.0, -1.0, 1.0))
+"""What a point is multiplied with to lie in the mirror y = 0."""
 UPRIGHT: Final = 0.5
 """How far up the trunk must point, as the cosine of its inclination, for its turn about the vertical to be told."""
 BEGINNING_S: Final = 0.3
-"""The pupil's heading is that of so much of the beginning of an attempt."""
+"""The pupil's heading is that of so much of an attempt, from when it is first seen. Colours need it seen no later than that, too:
+nobody knows how far he has turned by then."""
+_ROUNDED_S: Final = 1e-6
 _CHAIN: Final = (("hip", "shoulder"), ("knee", "hip"), ("ankle", "knee"))
 _SIDES: Final = ("left", "right")
+
+
+class PlacingError(ValueError):
+    """Why a motion cannot be brought into the canonical frame, in words that go on after its name."""
 
 
 @dataclass(frozen=True)
@@ -47,14 +54,14 @@ class Placing:
 
 def mirrored(joints: Float) -> Float:
     """(..., 17, 3) points in the mirror y = 0: left does what right did."""
-    return np.asarray(joints[..., _MIRROR, :] * _FLIP)
+    return np.asarray(joints[..., _MIRROR, :] * MIRROR_FLIP)
 
 
 def lead_right(track: Track, handed: Handed) -> Track:
     """The track, mirrored in the plane y = 0 of the world if the left side leads: then the leading side is the right one."""
     if handed == "right":
         return track
-    covariance = track.covariance_m2[:, _MIRROR] * np.outer(_FLIP, _FLIP)
+    covariance = track.covariance_m2[:, _MIRROR] * np.outer(MIRROR_FLIP, MIRROR_FLIP)
     return Track(track.t_s, mirrored(track.joints_m), covariance, track.states[:, _MIRROR])
 
 
@@ -96,16 +103,37 @@ def size_m(joints_m: Float) -> float:
     return total
 
 
-def placing_of(joints_m: Float, frame_s: float, to_size_m: float) -> Placing | None:
-    """How to bring (T, 17, 3) joints into the canonical frame of a body of size `to_size_m`; None if they do not show it."""
+def placing_of(joints_m: Float, frame_s: float, to_size_m: float, seen_within_s: float = BEGINNING_S) -> Placing:
+    """How to bring (T, 17, 3) joints into the canonical frame of a body of size `to_size_m`.
+
+    Args:
+        joints_m: from the beginning of an attempt, or from shortly before it.
+        frame_s: from one frame to the next.
+        to_size_m: canonical metres from shoulder to ankle.
+        seen_within_s: by when it must be seen to where he looks; infinite where it need be known only roughly.
+
+    Raises:
+        PlacingError: they do not show how large he is, or not early enough to where he looks.
+    """
     size = size_m(joints_m)
+    if not size > 0:
+        raise PlacingError("does not show how large the pupil is: his trunk, thigh or shank is never seen from end to end")
+    times_s = np.arange(len(joints_m)) * frame_s
     ahead = facing(joints_m)
     known = np.flatnonzero(np.isfinite(ahead[:, 0]))
-    if not len(known) or not size > 0:
-        return None
-    beginning = known[known <= known[0] + BEGINNING_S / frame_s] if frame_s > 0 else known[:1]
+    if not len(known) or times_s[known[0]] > seen_within_s + _ROUNDED_S:
+        raise PlacingError(_why_it_is_not_known(joints_m[times_s <= seen_within_s + _ROUNDED_S], seen_within_s))
+    beginning = known[times_s[known] <= times_s[known[0]] + BEGINNING_S + _ROUNDED_S]
     x, y = ahead[beginning].mean(axis=0)
     return Placing(float(np.arctan2(y, x)), to_size_m / size)
+
+
+def _why_it_is_not_known(joints_m: Float, within_s: float) -> str:
+    """To where a pupil looks whose (T, 17, 3) joints in the beginning do not show it; see `PlacingError`."""
+    when = f" in its first {within_s:g} s" if np.isfinite(within_s) else ""
+    if np.isfinite(joints_m[:, coco.TRUNK]).all(axis=(1, 2)).any():
+        return f"does not show the pupil standing upright{when}"
+    return f"does not show both shoulders and both hips at once{when}, and so not to where the pupil looks"
 
 
 def placed(joints_m: Float, placing: Placing) -> Float:

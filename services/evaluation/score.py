@@ -23,7 +23,7 @@ _FREE: Final = 0.15
 _FULL: Final = 1.25
 """From this severity on a fault costs no more."""
 _UNKNOWN_SIGMA: Final = 0.3
-"""What a fault that nobody could judge may have cost, of what it counts."""
+"""What a fault that nobody could judge may have cost more or less than the others, of what it counts."""
 
 
 _NODES, _SHARES = hermegauss(15)
@@ -55,11 +55,13 @@ def score(teaching: Teaching, judgements: Sequence[Judgement], deviation: Deviat
         return None
     severities = np.array([one.severity or 0.0 for one in judgements])
     sigmas = np.array([one.sigma or 0.0 for one in judgements])
-    good = 1 - float(np.linalg.norm(np.sqrt(weights) * _lost(severities)))
+    # What nobody judged counts as the rest does: not as if it had been good.
+    counted = np.where(known, weights, 0.0) / weights[known].sum()
+    good = 1 - float(np.linalg.norm(np.sqrt(counted) * _lost(severities)))
     # What a fault costs ends at either side, so its deviation is not a slope's: it is that of the costs of what it may have been.
     may_be = _lost(severities[:, None] + sigmas[:, None] * _NODES)
     deviations = np.sqrt(np.maximum((may_be**2) @ _SHARES - (may_be @ _SHARES) ** 2, 0.0))
-    variance = float(weights @ deviations**2) + float(weights[~known].sum()) * _UNKNOWN_SIGMA**2
+    variance = float(counted @ deviations**2) + float(weights[~known].sum()) * _UNKNOWN_SIGMA**2
     near = None if deviation is None else _near(deviation)
     if near is not None:
         good, variance = _FAULTS_SHARE * good + (1 - _FAULTS_SHARE) * near[0], _FAULTS_SHARE**2 * variance + near[1]

@@ -7,13 +7,16 @@ from typing import Final
 import numpy as np
 
 from models.arrays import Bool, Float
+from models.messages.feedback import MAX_FRAMES
 from models.messages.motion import JointState, Motion
 from models.skeleton import coco
+from models.teaching.standard import FRAME_S
 from services.evaluation.config import EvaluationConfig
 from services.evaluation.track import Track
 
-KEPT_S: Final = 20.0
-"""Longer than anything that is taught as one movement, with what is before and after it."""
+KEPT_S: Final = MAX_FRAMES * FRAME_S
+"""All that can be told of as one attempt: longer than anything that is taught as one movement
+(`models.teaching.standard.LONGEST_S`), performed as slowly as counts, with what is before and after it."""
 LONGEST_GAP_S: Final = 0.5
 """Nobody knows what the pupil did in a longer one: the stream begins anew."""
 FARTHEST_M: Final = 100.0
@@ -51,21 +54,22 @@ class Stream:
     missed: int = 0
     frames: deque[Frame] = field(default_factory=deque)
 
-    def take(self, motion: Motion, config: EvaluationConfig) -> list[Frame] | None:
-        """Take in the next motion: its frame, with an unknown one before it for each that is missing.
+    def goes_on(self, motion: Motion, config: EvaluationConfig) -> bool:
+        """Whether the next motion is of this stream, and not the beginning of another one."""
+        ahead, in_time = self._ahead(motion, config)
+        return in_time and ahead <= LONGEST_GAP_S / config.frame_s
 
-        Returns:
-            None if the stream begins anew with this motion; ask `newest` for its frame then.
-        """
+    def take(self, motion: Motion, config: EvaluationConfig) -> list[Frame]:
+        """Take in the next motion: its frame, with an unknown one before it for each that is missing."""
+        goes_on = self.goes_on(motion, config)
         ahead, in_time = self._ahead(motion, config)
         if in_time:
             self.missed += ahead - 1
-        goes_on = in_time and ahead <= LONGEST_GAP_S / config.frame_s
         self.epoch, self.sequence, self.t_ns = motion.epoch, motion.sequence, motion.t_ns
         if not goes_on:
             self.frames.clear()
             self.frames.append(_frame(0, motion))
-            return None
+            return [self.newest]
         last = self.frames[-1].number
         new = [*(_unknown(last + each) for each in range(1, ahead)), _frame(last + ahead, motion)]
         self.frames.extend(new)

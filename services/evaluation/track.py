@@ -59,6 +59,11 @@ class Track:
         kept = slice(first, end)
         return Track(self.t_s[kept], self.joints_m[kept], self.covariance_m2[kept], self.states[kept])
 
+    def hidden(self) -> "Track":
+        """As long, of somebody of whom nothing is known."""
+        unknown = np.full_like(self.states, JointState.UNKNOWN)
+        return Track(self.t_s, np.full_like(self.joints_m, np.nan), np.full_like(self.covariance_m2, np.nan), unknown)
+
     def frame_at(self, t_s: float) -> float:
         """The place of an instant among the frames, in frames; also between two of them, and beyond the ends."""
         return (t_s - float(self.t_s[0])) / self.frame_s if len(self) > 1 else 0.0

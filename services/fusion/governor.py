@@ -1,9 +1,10 @@
 """The governor: how often, and with which network, every camera is looked at, given the CPU there is.
 
 Two cores cannot run the large network on four cameras at 30 Hz, and a school box is slower still. The governor walks a
-ladder of levels. It predicts what each level would cost from what an inference was measured to cost, takes the best
-level that fits, and steps down at once when the cameras report that they fall behind, whatever the prediction said. All cameras get
-the same rate, and places in the turn spread evenly, so that their inferences do not collide.
+ladder of levels, a rung at a time. It climbs to what it predicts to fit, from what an inference was measured to cost; it stays
+by what it measures: it steps down at once when the cameras report that they fall behind, and when the CPU stays filled beyond
+its share for some seconds. All cameras get the same rate, and places in the turn spread evenly, so that their inferences do not
+collide.
 """
 
 from collections.abc import Sequence
@@ -37,10 +38,10 @@ LADDER: Final = (
 
 START: Final = 2
 _PATIENCE_S: Final = 5.0
-_FIRST_PENALTY_S: Final = 15.0
-_LONGEST_PENALTY_S: Final = 240.0
+_FIRST_PAUSE_S: Final = 15.0
+_LONGEST_PAUSE_S: Final = 240.0
 _PROVEN_S: Final = 60.0
-"""A rung that failed before and now holds for so long is trusted again."""
+"""A rung that failed before and now holds for so long is trusted again, and so are those below it."""
 _SHORTFALL: Final = 0.85
 _SETTLING_S: Final = 2.5
 _STARTING_S: Final = 8.0
@@ -48,6 +49,8 @@ _STARTING_S: Final = 8.0
 _ROOM_TO_CLIMB: Final = 0.92
 _ROOM_TO_STAY: Final = 1.05
 """Shares of the budget: near its limit the governor would swing if climbing and staying had the same one."""
+_CROWDED_S: Final = 3
+"""So many busy seconds in a row are more than an attempt that is judged, or a lesson that is opened: the rung is too dear."""
 
 
 @dataclass(frozen=True)
@@ -66,24 +69,37 @@ class Load:
 
 
 @dataclass(frozen=True)
+class Pause:
+    """How long a rung that was given up is left alone, and those above it.
+
+    Attributes:
+        length_s: its length; twice that, up to a limit, if the rung fails again before it has proven itself.
+        until_ns: CLOCK_MONOTONIC of its end.
+    """
+
+    length_s: float
+    until_ns: int
+
+
+@dataclass(frozen=True)
 class GovernorState:
-    """Where on the ladder, since when, what inferences cost, and which rung failed.
+    """Where on the ladder, since when, what inferences cost, and which rungs failed.
 
     Attributes:
         level: index into `LADDER`.
         started_ns: CLOCK_MONOTONIC of the first step.
         since_ns: of the last move.
-        failed: the rung that was last given up; it and those above are not tried again before `failed_until_ns`.
-        penalty_s: how long the next rung that fails is left alone.
+        crowded_s: seconds in a row, up to now, in which the CPU was filled beyond what the level may fill.
+        failed: the rungs that were given up and are not proven since, each with its own pause: one shortage can take several
+            rungs within seconds, and says no more of any of them than a shortage that takes one.
         cost: of an inference.
     """
 
     level: int = START
     started_ns: int | None = None
     since_ns: int = 0
-    failed: int | None = None
-    failed_until_ns: int = 0
-    penalty_s: float = _FIRST_PENALTY_S
+    crowded_s: int = 0
+    failed: dict[int, Pause] = field(default_factory=dict)
     cost: InferenceCost = field(default_factory=InferenceCost)
 
     @property
@@ -135,14 +151,17 @@ def turn_offset_ns(position: int, cameras: int, rate_hz: float) -> int:
 
 def _reconsider(state: GovernorState, load: Load, t_ns: int, allowed: Sequence[int], cpu_target: float) -> GovernorState:
     """Down, up or stay, once the last move has settled."""
-    settled_s = (t_ns - state.since_ns) * 1e-9
-    wanted = _best_affordable(state, load, [rung for rung in allowed if not _shunned(rung, state, t_ns)], cpu_target)
-    if wanted > state.level or _falls_behind(state, load):
+    settled_s, budget = (t_ns - state.since_ns) * 1e-9, load.granted_cores * cpu_target
+    # The rung in force is measured, not predicted: what inferences cost in the rush of the start would be held against it.
+    crowded_s = state.crowded_s + 1 if load.used_cores > budget * _ROOM_TO_STAY else 0
+    state = replace(state, crowded_s=crowded_s)
+    if crowded_s >= _CROWDED_S or _falls_behind(state, load):
         return _give_up(state, t_ns, allowed)
-    if wanted < state.level and settled_s >= _PATIENCE_S:
-        return _move(state, max(rung for rung in allowed if rung < state.level), t_ns)
-    if state.failed is not None and state.level <= state.failed and settled_s >= _PROVEN_S:
-        return replace(state, failed=None, penalty_s=_FIRST_PENALTY_S)
+    above = max((rung for rung in allowed if rung < state.level and not _paused(rung, state, t_ns)), default=None)
+    if above is not None and settled_s >= _PATIENCE_S and predicted_cores(state, load, LADDER[above]) <= budget * _ROOM_TO_CLIMB:
+        return _move(state, above, t_ns)
+    if settled_s >= _PROVEN_S:
+        return replace(state, failed={rung: pause for rung, pause in state.failed.items() if rung < state.level})
     return state
 
 
@@ -153,23 +172,14 @@ def predicted_cores(state: GovernorState, load: Load, level: Level) -> float:
     return max(load.used_cores - now, 0.0) + then
 
 
-def _shunned(rung: int, state: GovernorState, t_ns: int) -> bool:
+def _paused(rung: int, state: GovernorState, t_ns: int) -> bool:
     """Whether a rung is left alone, because it or one below it was given up a short time ago."""
-    return state.failed is not None and rung <= state.failed and t_ns < state.failed_until_ns
+    return any(rung <= failed and t_ns < pause.until_ns for failed, pause in state.failed.items())
 
 
 def _below(level: int, allowed: Sequence[int]) -> int:
     """The next rung down; the lowest itself has none below."""
     return next((rung for rung in allowed if rung > level), allowed[-1])
-
-
-def _best_affordable(state: GovernorState, load: Load, rungs: Sequence[int], cpu_target: float) -> int:
-    budget = load.granted_cores * cpu_target
-    for rung in rungs:
-        room = _ROOM_TO_CLIMB if rung < state.level else _ROOM_TO_STAY
-        if predicted_cores(state, load, LADDER[rung]) <= budget * room:
-            return rung
-    return rungs[-1]
 
 
 def _falls_behind(state: GovernorState, load: Load) -> bool:
@@ -185,13 +195,11 @@ def _give_up(state: GovernorState, t_ns: int, allowed: Sequence[int]) -> Governo
     """One rung down, and this one is left alone for a while: longer each time, or it would be tried and given up for ever."""
     if state.level == allowed[-1]:
         return state
-    return replace(
-        _move(state, _below(state.level, allowed), t_ns),
-        failed=state.level,
-        failed_until_ns=t_ns + round(state.penalty_s * 1e9),
-        penalty_s=min(2 * state.penalty_s, _LONGEST_PENALTY_S),
-    )
+    before = state.failed.get(state.level)
+    length_s = _FIRST_PAUSE_S if before is None else min(2 * before.length_s, _LONGEST_PAUSE_S)
+    pause = Pause(length_s, t_ns + round(length_s * 1e9))
+    return replace(_move(state, _below(state.level, allowed), t_ns), failed=state.failed | {state.level: pause})
 
 
 def _move(state: GovernorState, level: int, t_ns: int) -> GovernorState:
-    return replace(state, level=level, since_ns=t_ns)
+    return replace(state, level=level, since_ns=t_ns, crowded_s=0)

@@ -14,6 +14,7 @@ from models.messages.health import CameraHealth, FusionHealth
 from models.messages.lesson import SegmentRequest
 from models.messages.motion import Motion
 from models.messages.observation import Observation
+from models.messages.pupil import PupilCorrections
 from models.messages.trouble import Trouble, messages_refused
 from models.process import Delivery, ProcessContext
 from services.fusion import governor
@@ -100,7 +101,7 @@ class FusionLoop:
     def run(self) -> None:
         """Take observations as they come and tick at the live rate; ticks that were missed are not made up for."""
         self._bus.declare_alive(topics.alive(self._context.name))
-        heard = (topics.ALL_HEALTH, topics.feedback(), topics.segment_request())
+        heard = (topics.ALL_HEALTH, topics.feedback(), topics.pupil_corrections(), topics.segment_request())
         subscription = self._bus.subscribe(*sorted(self._observations), *heard, keep=KEEP)
         period_ns = round(SECOND_NS / self._context.site.fusion.live_hz)
         tick_ns = time.monotonic_ns()
@@ -138,6 +139,10 @@ class FusionLoop:
             if delivery.topic == topics.feedback():
                 codec.decode(delivery.payload, Feedback)  # A lesson holds nothing that cannot be read.
                 self._log.add("feedback", now_ns, delivery.payload)
+                return
+            if delivery.topic == topics.pupil_corrections():
+                codec.decode(delivery.payload, PupilCorrections)
+                self._log.add("corrections", now_ns, delivery.payload)
                 return
             if delivery.topic == topics.segment_request():
                 self._answer(codec.decode(delivery.payload, SegmentRequest), now_ns)

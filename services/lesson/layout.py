@@ -20,7 +20,7 @@ PART_SUFFIX = ".mcap.part"
 """Of a file that is being written, or was when its recorder died."""
 
 MARK = 1
-KINDS: dict[int, EntryKind] = {2: "observation", 3: "tick", 4: "motion", 5: "health", 6: "feedback"}
+KINDS: dict[int, EntryKind] = {2: "observation", 3: "tick", 4: "motion", 5: "health", 6: "feedback", 7: "corrections"}
 """Kinds of entries by number of their channel."""
 CHANNEL_OF = {kind: channel for channel, kind in KINDS.items()}
 
@@ -42,7 +42,7 @@ SCHEMAS = (
     Schema(1, msgspec.json.encode(msgspec.json.schema(Mark)), "jsonschema", "kinebox.Mark"),
     *(
         Schema(number, b"", "", f"kinebox.{name}")
-        for number, name in ((2, "Observation"), (3, "Tick"), (4, "Motion"), (5, "Health"), (6, "Feedback"))
+        for number, name in enumerate(("Observation", "Tick", "Motion", "Health", "Feedback", "PupilCorrections"), start=2)
     ),
 )
 CHANNELS = (

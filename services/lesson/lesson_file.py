@@ -10,6 +10,7 @@ import fcntl
 import os
 import struct
 import zlib
+from collections import deque
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -33,6 +34,9 @@ from mcap.records import (
     SummaryOffset,
 )
 
+from models.messages import codec
+from models.messages.attempts import REMEMBERED
+from models.messages.feedback import Feedback
 from models.messages.lesson import FusionLog
 from services.lesson import lesson_header
 from services.lesson.free_names import rename_free
@@ -65,6 +69,7 @@ class Contents:
         segments: stretches that replay in one go.
         segment_ns: the name of the last one; 0 before the first.
         next_part: number of the part that it goes on with.
+        attempts: names of the last attempts in it, in their order; 0 for one that cannot be read.
     """
 
     end: int = 0
@@ -78,6 +83,7 @@ class Contents:
     segments: int = 0
     segment_ns: int = 0
     next_part: int = 0
+    attempts: deque[int] = field(default_factory=lambda: deque(maxlen=REMEMBERED))
 
     @property
     def seconds(self) -> float:
@@ -88,6 +94,8 @@ class Contents:
         """Note a chunk that lies at byte `start`."""
         for message in messages:
             self.counts[message.channel_id] = self.counts.get(message.channel_id, 0) + 1
+            if message.channel_id == CHANNEL_OF["feedback"]:
+                self.attempts.append(_name_of(message.data))
         self.chunks.append(
             ChunkIndex(
                 chunk_length=length,
@@ -164,6 +172,16 @@ class LessonWriter:
     def segments(self) -> int:
         """Stretches that replay in one go."""
         return self._contents.segments
+
+    @property
+    def attempts(self) -> int:
+        """How many are safe on the disk."""
+        return self._contents.counts.get(CHANNEL_OF["feedback"], 0)
+
+    @property
+    def newest_attempts(self) -> tuple[int, ...]:
+        """The names (`Feedback.id`) of the last of them, in their order."""
+        return tuple(self._contents.attempts)
 
     @property
     def position(self) -> tuple[int, int]:
@@ -285,6 +303,13 @@ def is_being_written(file: BinaryIO) -> bool:
         return False  # The file system has no locks.
     fcntl.flock(file, fcntl.LOCK_UN)
     return False
+
+
+def _name_of(feedback: bytes) -> int:
+    try:
+        return codec.decode(feedback, Feedback).id
+    except codec.CodecError:  # It counts all the same, as in a report.
+        return 0
 
 
 def _chunk(messages: list[Message]) -> Chunk:

@@ -1,12 +1,17 @@
 """What a lesson's file says about the lesson: everything beside the log that replaying it needs."""
 
+import datetime as dt
 import zlib
 from dataclasses import dataclass, fields
 
 from models.camera.rig import Rig, decode_rig
+from services.lesson.local_time import local_time
 
-FORMAT = 2
-"""Version of the file's layout; a reader refuses one that is newer. 1 had no feedback; all else of it is the same."""
+FORMAT = 3
+"""Version of the file's layout; a reader refuses one that is newer.
+
+2 had no corrections, 1 no feedback either; all else of them is the same.
+"""
 NAME = "kinebox.lesson"
 _CHECK = "crc32"
 _LATEST_NS = 2**63
@@ -51,6 +56,15 @@ class LessonHeader:
     def started_s(self) -> float:
         """Begin of the lesson, seconds since 1970 (UTC)."""
         return (self.started_ns + self.wall_minus_monotonic_ns) * 1e-9
+
+    @property
+    def begun(self) -> dt.datetime:
+        """The same, as people read it here."""
+        return local_time(self.started_s)
+
+    def wall(self, t_s: float) -> dt.datetime:
+        """An instant of CLOCK_MONOTONIC, in seconds, as people read it here."""
+        return self.begun + dt.timedelta(seconds=t_s - self.started_ns * 1e-9)
 
     def rig(self) -> Rig:
         """The decoded calibration; UserError if this KineBox cannot read it."""

@@ -114,11 +114,6 @@ class Lesson:
             remedy = f"remove it with 'kinebox lessons delete {self.path.name.removesuffix(SUFFIX)}'"
             raise UserError(f"lesson {self.path} is empty: its recording ended before anything was recorded; {remedy}")
 
-    def span_ns(self) -> tuple[int, int]:
-        """CLOCK_MONOTONIC of the first and the last entry, having checked the whole file; UserError as for `parts`."""
-        summary = self.summary()
-        return summary.begin_ns, summary.end_ns
-
 
 class PartDecoder:
     """Turns chunks into parts, in their order in the file, and sees to it that none is missing."""

@@ -2,11 +2,12 @@
 
 What was observed goes through fusion's step again; motions come out with their times moved to now, so that a figure is as old
 when it is shown as it was in the lesson. What cameras and fusion said of themselves is said again at its time. Attempts are found
-and judged again by the evaluation, which runs beside; it is told what pupils were to do at that time of the lesson.
+and judged again by the evaluation, which runs beside; it is told what pupils were to do at that time of the lesson, and who was up.
 """
 
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,9 +19,11 @@ from models.messages import codec, topics
 from models.messages.feedback import ActivityRequest
 from models.messages.health import Health, ReplayHealth
 from models.messages.motion import Motion
+from models.messages.pupil import NOBODY, PupilTurn
 from models.process import EDGE, EVALUATION, ROUTER, Playback, ProcessContext, process_name
 from services.fusion.warm_up import warm_up
-from services.lesson.lesson_reader import Lesson, open_lesson
+from services.lesson.lesson_reader import Lesson, LessonPart, open_lesson
+from services.lesson.pupils import turns_of
 from services.lesson.replay import Replayed, configuration, decode, replay
 from services.support.health import HealthReporter
 
@@ -92,7 +95,9 @@ class Player:
         self._asked: ActivityRequest | None = None
         self._ask_again = threading.Event()
         self._position_ns = 0
-        self._begin_ns, self._end_ns = lesson.span_ns()
+        self._begin_ns = self._end_ns = lesson.header.started_ns
+        self._turns = turns_of(self._measured())
+        self._turn = PupilTurn(NOBODY, 0)
         self._reporter = HealthReporter(context.name, context.bus, context.resources, clock_ns)
 
     def run(self) -> None:
@@ -106,9 +111,20 @@ class Player:
             if not self._playback.loop or not self._wait_until(self._clock_ns() + round(_ROUND_S * SECOND_NS)):
                 return
 
+    def _measured(self) -> Iterator[LessonPart]:
+        """The lesson's parts; from when to when it is becomes known as they are read, for one reading of a long one is enough."""
+        times_ns: list[int] = []
+        for part in self._lesson.parts():
+            if part.entries:
+                times_ns = [*times_ns[:1], part.entries[0].t_ns, part.entries[-1].t_ns]
+                self._begin_ns, self._end_ns = times_ns[0], times_ns[-1]
+            yield part
+
     def _play(self, items: Iterator[Replayed]) -> None:
         self._said.clear()
         self._asked = None
+        self._call(PupilTurn(NOBODY, self._clock_ns()))  # Whoever was up at the end is not up at the beginning.
+        turns = deque(self._turns)
         pace = Pace(self._playback.speed, self._begin_ns, self._clock_ns())
         for item in items:
             entry = item.entry
@@ -124,7 +140,10 @@ class Player:
                 elif said.process == EVALUATION and said.evaluation is not None:
                     self._ask(ActivityRequest(said.evaluation.activity))
             for motion in item.motions:
-                self._bus.publish(topics.motion(motion.kind), codec.encode(moved(motion, due_ns - entry.t_ns, self._clock_ns())))
+                shown = moved(motion, due_ns - entry.t_ns, self._clock_ns())
+                if motion.kind == "smooth":
+                    self._call_until(motion.t_ns, shown.t_ns, turns)
+                self._bus.publish(topics.motion(motion.kind), codec.encode(shown))
 
     def _wait_until(self, due_ns: int) -> bool:
         """Go round until then, at least once; False if the process shall end."""
@@ -135,6 +154,7 @@ class Player:
             if self._ask_again.is_set() and self._asked is not None:
                 self._ask_again.clear()
                 self._bus.publish(topics.activity_request(), codec.encode(self._asked))
+                self._call(self._turn)
             remaining_s = (due_ns - self._clock_ns()) * 1e-9
             if self._context.stop.wait(max(min(remaining_s, _ROUND_S), 0.0)):
                 return False
@@ -146,6 +166,18 @@ class Player:
         if request != self._asked:
             self._asked = request
             self._ask_again.set()
+
+    def _call_until(self, t_ns: int, shown_ns: int, turns: deque[PupilTurn]) -> None:
+        """Say who was up until an instant of the lesson, which is shown as `shown_ns`: so the evaluation dates beginnings, too."""
+        while turns and turns[0].t_ns <= t_ns:
+            turn = turns.popleft()
+            since_ns = shown_ns - round((t_ns - turn.t_ns) / self._playback.speed)
+            self._call(PupilTurn(turn.pupil, max(since_ns, self._turn.t_ns + 1)))
+
+    def _call(self, turn: PupilTurn) -> None:
+        """Say who was up."""
+        self._turn = turn
+        self._bus.publish(topics.pupil_turn(), codec.encode(turn))
 
     def _speak(self) -> None:
         length_s = (self._end_ns - self._begin_ns) * 1e-9

@@ -184,6 +184,9 @@ class Recorder:
             recorded_s=writer.recorded_s,
             size_bytes=writer.size,
             gaps=writer.gaps,
+            began_ns=writer.header.started_ns,
+            attempts=writer.attempts,
+            newest=writer.newest_attempts,
         )
 
     def _begin(self, writer: LessonWriter, gap: str = "") -> None:

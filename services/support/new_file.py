@@ -13,6 +13,15 @@ def write_new(path: Path, data: bytes) -> None:
     """
     if path.exists():
         raise FileExistsError(path)
+    write_over(path, data)
+
+
+def write_over(path: Path, data: bytes) -> None:
+    """The same, in the place of the file of that name if there is one.
+
+    Raises:
+        OSError: it cannot be written; what was there is left as it was.
+    """
     part = path.with_name(f".{path.name}.part")
     try:
         with part.open("wb") as file:

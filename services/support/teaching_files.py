@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Final, TypeVar
 
 import models.teaching
+from models.config.site import SCHOOL_FOLDER
 from models.errors import UserError
 from models.teaching import standard
 from models.teaching.schema import Teaching, Vocabulary, decode_teaching
@@ -21,17 +22,31 @@ Content = TypeVar("Content")
 
 
 def own_folder(data: Path, teaching: str) -> Path | None:
-    """The school's own folder by the site file's `teaching`; None if it has none.
+    """The school's own folder by the site file's `teaching`; None if that names none, and the usual one is not there.
 
     Raises:
-        UserError: it does not exist.
+        UserError: the one that it names does not exist, or is not in the data folder.
     """
+    folder = folder_of_own(data, teaching)
+    if folder.is_dir():
+        return folder
     if not teaching:
         return None
-    folder = data / teaching
-    if not folder.is_dir():
-        raise UserError(f"folder {folder} does not exist; make it, or correct 'teaching' under [evaluation] in the site file")
-    return folder
+    raise UserError(f"folder {folder} does not exist; make it, or correct 'teaching' under [evaluation] in the site file")
+
+
+def folder_of_own(data: Path, teaching: str) -> Path:
+    """The same, whether it is there or not; UserError if it is not in the data folder.
+
+    A lesson brings the site file of another box along, and by what it names standards are written: never outside the data folder.
+    (A link that somebody made in there may lead elsewhere.)
+    """
+    named = Path(teaching or SCHOOL_FOLDER)
+    if named.is_absolute() or ".." in named.parts:
+        raise UserError(
+            f"folder '{teaching}' is not in the data folder {data}; correct 'teaching' under [evaluation] in the site file"
+        )
+    return data / named
 
 
 def load_teachings(own: Path | None, vocabulary: Vocabulary | None) -> dict[str, Teaching]:

@@ -1,15 +1,13 @@
 """The tablets that watch: one session each, none of which can hold up another or the box."""
 
 import asyncio
-from collections import deque
 from collections.abc import Callable
 
 from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from services.tablet.attempts import KEPT
 from services.tablet.credit import CreditError, NewestFirst
-from services.tablet.messages import CLIENT_MESSAGE, Ack, Choose, Ping, Pong
+from services.tablet.messages import CLIENT_MESSAGE, Ack, Ping, Pong, Wish
 
 MOTION_CREDIT = 2
 STATUS_CREDIT = 1
@@ -17,13 +15,13 @@ MAX_CLIENTS = 50
 
 
 class Session:
-    """One connected client: two lanes and the attempts to it; its acknowledgements, wishes and pings back.
+    """One connected client: two lanes and the list of attempts to it; its acknowledgements, wishes and pings back.
 
     Args:
         socket: that it has opened.
         clock_ns: CLOCK_MONOTONIC.
         reject: told of a message that cannot be understood.
-        choose: told which action pupils shall do; None for whichever it is.
+        wish: told what somebody at the client wants of the box.
     """
 
     def __init__(
@@ -31,16 +29,16 @@ class Session:
         socket: WebSocket,
         clock_ns: Callable[[], int],
         reject: Callable[[], None],
-        choose: Callable[[str | None], None],
+        wish: Callable[[Wish], None],
     ) -> None:
         self._socket = socket
         self._clock_ns = clock_ns
         self._reject = reject
-        self._choose = choose
+        self._wish = wish
         self._motions: NewestFirst[bytes] = NewestFirst(MOTION_CREDIT)
         self._statuses: NewestFirst[str] = NewestFirst(STATUS_CREDIT)
-        # Each is news of its own. One that is not sent before `KEPT` newer ones came is not on the page's list any more either.
-        self._attempts: deque[str] = deque(maxlen=KEPT)
+        # Whole each time: the newest is all that a client needs, and few come.
+        self._attempts: str | None = None
         self._ping: Ping | None = None
         self._work = asyncio.Event()
 
@@ -54,9 +52,9 @@ class Session:
         self._statuses.offer(text)
         self._work.set()
 
-    def offer_attempt(self, text: str) -> None:
-        """Have an attempt sent."""
-        self._attempts.append(text)
+    def offer_attempts(self, text: str) -> None:
+        """Have the list of attempts sent, in the place of one that waits."""
+        self._attempts = text
         self._work.set()
 
     async def run(self) -> None:
@@ -78,10 +76,10 @@ class Session:
             if isinstance(message, Ack):
                 self._motions.acknowledge(message.motions)
                 self._statuses.acknowledge(message.statuses)
-            elif isinstance(message, Choose):
-                self._choose(message.activity)
-            else:
+            elif isinstance(message, Ping):
                 self._ping = message
+            else:
+                self._wish(message)
         except (ValidationError, CreditError):
             self._reject()
         self._work.set()
@@ -104,11 +102,9 @@ class Session:
             await self._socket.send_bytes(frame)
         if (text := self._statuses.take()) is not None:
             await self._socket.send_text(text)
-        # One at a time: a page that has just opened gets its figure between the attempts of the lesson so far.
-        if self._attempts:
-            await self._socket.send_text(self._attempts.popleft())
-            if self._attempts:
-                self._work.set()
+        if self._attempts is not None:
+            attempts, self._attempts = self._attempts, None
+            await self._socket.send_text(attempts)
 
 
 class Audience:
@@ -143,7 +139,7 @@ class Audience:
         for session in self._sessions:
             session.offer_status(text)
 
-    def show_attempt(self, text: str) -> None:
-        """Have an attempt sent to everyone."""
+    def show_attempts(self, text: str) -> None:
+        """Have the list of attempts sent to everyone."""
         for session in self._sessions:
-            session.offer_attempt(text)
+            session.offer_attempts(text)

@@ -8,7 +8,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from models.messages.feedback import Verdict
+from models.messages.feedback import Silence, Verdict
+from models.messages.pupil import CODE, LONGEST
 from models.messages.trouble import CalibrationCode, MachineCode
 
 CameraState = Literal["starting", "ok", "slow", "lost", "unknown"]
@@ -106,11 +107,14 @@ class Replay(_Model):
 
 
 class EvaluationStatus(_Model):
-    """What pupils are to do, and whether somebody does it."""
+    """What pupils are to do, who is up, and whether somebody does it."""
 
     activity: Annotated[str | None, Field(description="the action that was chosen; null: whichever of them is recognised")]
     activity_chosen_by: Annotated[
         Literal["site", "tablet"] | None, Field(description="null: not known, since the evaluation has yet to say so")
+    ]
+    pupil: Annotated[
+        str | None, Field(description="code of who is up; null: nobody who is named, or not known as `activity_chosen_by` says")
     ]
     state: Annotated[
         Literal["waiting", "moving", "unknown"],
@@ -167,10 +171,12 @@ class AttemptMeasure(_Model):
 
 
 class Attempt(_Model):
-    """An attempt that ended: sent once, and the newest of them when a page connects, the oldest first."""
+    """An attempt that ended."""
 
-    type: Literal["attempt"] = "attempt"
     id: Annotated[int, Field(description="its replay is at /api/attempts/{id}/replay as long as the attempt is listed")]
+    number: Annotated[
+        int | None, Field(description="counts the attempts of the lesson, as its report does; null: the lesson does not hold it")
+    ]
     action: str
     by: Annotated[Literal["recognised", "chosen"], Field(description="how it is known what was tried")]
     handed: Literal["right", "left"]
@@ -181,7 +187,28 @@ class Attempt(_Model):
     cue: Annotated[str | None, Field(description="the fault to correct; its words are in /api/teaching")]
     cue_certainty: Annotated[float | None, Field(description="0 to 1; null without a cue")]
     praise: Annotated[str | None, Field(description="the fault whose point was good; its words are in /api/teaching")]
+    silence: Annotated[
+        Silence | None,
+        Field(
+            description="what it means that there is no cue; unseen: too little was seen, but for what is praised; null with a cue"
+        ),
+    ]
     measures: Annotated[list[AttemptMeasure], Field(description="at most three, in the order in which they are shown")]
+    pupil: Annotated[str | None, Field(description="code of who was up when it began, or as corrected; null: nobody who is named")]
+
+
+class AttemptList(_Model):
+    """The newest attempts since the list began: sent to a page that connects, and to all when it changes. It is whole each time."""
+
+    type: Literal["attempts"] = "attempts"
+    attempts: Annotated[list[Attempt], Field(description="the oldest first")]
+    earlier: Annotated[
+        Literal["listed", "recorded", "lost"],
+        Field(
+            description="those from before the server was started again: they are listed like all others; recorded: some are not, "
+            "but the lesson holds them; lost: whether there were any is not known"
+        ),
+    ]
 
 
 Words = Annotated[dict[str, str], Field(description="the same in every language, by its code")]
@@ -225,6 +252,30 @@ class Choose(_Model):
     ]
 
 
+PupilCode = Annotated[str, Field(pattern=f"^{CODE}$", max_length=LONGEST)]
+
+
+class Turn(_Model):
+    """Who is up from now on."""
+
+    type: Literal["turn"]
+    pupil: Annotated[PupilCode | None, Field(description="code; null: nobody who is named")]
+
+
+class Correction(_Model):
+    """Whose an attempt was after all."""
+
+    type: Literal["correction"]
+    attempt: Annotated[int, Field(ge=0, lt=2**53, description="its id")]
+    pupil: Annotated[PupilCode | None, Field(description="code; null: nobody who is named")]
+
+
+class Anew(_Model):
+    """The list of attempts shall begin anew, on all pages. Not while a lesson is recorded: its numbers are those of the report."""
+
+    type: Literal["anew"]
+
+
 class Ping(_Model):
     """The page measures the way to the box and back; only the newest is answered."""
 
@@ -240,6 +291,8 @@ class Ack(_Model):
     statuses: Annotated[int, Field(ge=0, lt=2**53)]
 
 
-ClientMessage = Annotated[Ack | Choose | Ping, Field(discriminator="type")]
+Wish = Choose | Turn | Correction | Anew
+"""What somebody at a page wants of the box."""
+ClientMessage = Annotated[Ack | Ping | Wish, Field(discriminator="type")]
 
-CLIENT_MESSAGE: TypeAdapter[Ack | Choose | Ping] = TypeAdapter(ClientMessage)
+CLIENT_MESSAGE: TypeAdapter[Ack | Ping | Wish] = TypeAdapter(ClientMessage)

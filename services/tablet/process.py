@@ -14,15 +14,17 @@ from models.config.site import TabletConfig
 from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.addressed import read_health
+from models.messages.attempts import AttemptsBegin, FeedbackRequest, RememberedFeedback
 from models.messages.feedback import ActivityRequest, Feedback
 from models.messages.motion import Motion
+from models.messages.pupil import PupilCorrections, PupilTurn
 from models.messages.trouble import messages_refused
 from models.process import Bus, Delivery, ProcessContext, Subscription
 from services.support import listening
 from services.support.health import PERIOD_S, HealthReporter
 from services.support.teaching_files import load_teachings, own_folder
 from services.tablet.room_state import RoomState
-from services.tablet.server import TabletServer, create_app
+from services.tablet.server import TabletServer, Told, create_app
 from services.tablet.teaching_words import words_of
 
 PAGE = Path(__file__).parent / "web" / "dist"
@@ -50,7 +52,7 @@ def main(context: ProcessContext) -> None:
     listener = listen(site.tablet)
     cameras = tuple(camera.name for camera in site.cameras)
     room = RoomState(site.name, cameras, site.fusion.live_hz, time.monotonic_ns(), context.playback)
-    server = TabletServer(room, time.monotonic_ns, teaching, lambda request: _ask(context.bus, request))
+    server = TabletServer(room, time.monotonic_ns, teaching, lambda told: _tell(context.bus, told))
     try:
         asyncio.run(_serve(context, server, listener))
     finally:
@@ -73,8 +75,18 @@ def listen(config: TabletConfig) -> socket.socket:
         raise UserError(f"{where}: {error.strerror}; {remedy}") from error
 
 
-def _ask(bus: Bus, request: ActivityRequest) -> None:
-    bus.publish(topics.activity_request(), codec.encode(request))
+def _tell(bus: Bus, told: Told) -> None:
+    match told:
+        case ActivityRequest():
+            bus.publish(topics.activity_request(), codec.encode(told))
+        case PupilTurn():
+            bus.publish(topics.pupil_turn(), codec.encode(told))
+        case PupilCorrections():
+            bus.publish(topics.pupil_corrections(), codec.encode(told))
+        case AttemptsBegin():
+            bus.publish(topics.attempts_begin(), codec.encode(told))
+        case FeedbackRequest():
+            bus.publish(topics.feedback_request(), codec.encode(told))
 
 
 class _Uvicorn(uvicorn.Server):
@@ -112,7 +124,8 @@ async def _serve(context: ProcessContext, server: TabletServer, listener: socket
         if not part.cancelled() and (error := part.exception()) is not None:
             log.error("a part of the server failed", part=part.get_name(), error=repr(error))
 
-    subscription = context.bus.subscribe(topics.motion("live"), topics.feedback(), topics.ALL_HEALTH, keep=_KEEP)
+    heard = (topics.motion("live"), topics.feedback(), topics.remembered_feedback(), topics.ALL_HEALTH)
+    subscription = context.bus.subscribe(*heard, keep=_KEEP)
     context.bus.watch_alive(topics.ALL_ALIVE, seen)
     context.bus.declare_alive(topics.alive(context.name))
     receiver = asyncio.create_task(asyncio.to_thread(_receive, context, subscription, server, hand_over), name="bus")
@@ -158,6 +171,9 @@ def decoded(delivery: Delivery, server: TabletServer) -> Callable[[], None]:
         if delivery.topic == topics.feedback():
             feedback = codec.decode(delivery.payload, Feedback)
             return lambda: server.receive_feedback(feedback)
+        if delivery.topic == topics.remembered_feedback():
+            remembered = codec.decode(delivery.payload, RememberedFeedback)
+            return lambda: server.receive_remembered(remembered)
         health = read_health(delivery.topic, delivery.payload)
         return lambda: server.receive_health(health)
     except codec.CodecError:

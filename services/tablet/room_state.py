@@ -119,10 +119,16 @@ class RoomState:
             self._presences.note_stand_in(now_ns)  # It would not be heard if it did not route.
 
     @property
-    def asked(self) -> tuple[str, str] | None:
-        """Which action pupils are to do and whose word that was, as the evaluation last said; None if it never did."""
+    def asked(self) -> tuple[str, str, str] | None:
+        """Which action pupils are to do, whose word that was, and who is up, as the evaluation last said; None if it never did."""
         evaluation = self._evaluation
-        return (evaluation.activity, evaluation.chosen_by) if evaluation is not None else None
+        return (evaluation.activity, evaluation.chosen_by, evaluation.pupil) if evaluation is not None else None
+
+    @property
+    def restarted(self) -> bool:
+        """Whether there was a page's server before this one since the box was started, as far as the supervisor has said."""
+        restarts = self._restarts("tablet")
+        return restarts is not None and restarts.count > 0
 
     def set_alive(self, process: str, alive: bool, now_ns: int) -> None:
         """A process joined or left the bus."""
@@ -149,7 +155,7 @@ class RoomState:
             cpu_load=known(fusion.cpu_load) if fusion else None,
             machine=self._machine(now_ns),
             calibration=_calibration(fusion_health),
-            recording=self._recording(now_ns),
+            recording=self.recording(now_ns),
             replay=self._replay(now_ns),
             evaluation=self._evaluates(now_ns),
             cameras=[self._camera(name, name in used, now_ns) for name in self._cameras],
@@ -181,7 +187,8 @@ class RoomState:
             return None
         return heard.health
 
-    def _recording(self, now_ns: int) -> Recording | None:
+    def recording(self, now_ns: int) -> Recording | None:
+        """What is being recorded, as far as the recorder says so."""
         health = self._said(RECORDER, now_ns)
         recorder = health.recorder if health else None
         if recorder is None or not recorder.lesson:
@@ -209,6 +216,7 @@ class RoomState:
         return EvaluationStatus(
             activity=asked.activity if asked is not None and asked.activity != ANY else None,
             activity_chosen_by=asked.chosen_by if asked is not None else None,
+            pupil=asked.pupil or None if asked is not None else None,
             state=heard.state if heard is not None else "unknown",
         )
 

@@ -3,22 +3,24 @@
 import asyncio
 from collections.abc import Awaitable, Callable
 from pathlib import Path
-from typing import Any
 from urllib.parse import urlsplit
 
 from fastapi import FastAPI, Request, Response, WebSocket
 from fastapi.staticfiles import StaticFiles
-from pydantic.json_schema import models_json_schema
 
+from models.messages.attempts import AttemptsBegin, FeedbackRequest, RememberedFeedback
 from models.messages.feedback import ANY, ActivityRequest, Feedback
-from models.messages.health import Health
+from models.messages.health import EvaluationHealth, Health, RecorderHealth
 from models.messages.motion import Motion
-from models.process import EVALUATION
+from models.messages.pupil import NOBODY, PupilCorrection, PupilCorrections, PupilTurn
+from models.process import EVALUATION, RECORDER
 from services.tablet import metrics, motion_frame, teaching_routes
 from services.tablet.attempts import Attempts
 from services.tablet.audience import Audience, Session
-from services.tablet.messages import Ack, Attempt, Choose, Ping, Pong, Status, Teaching
+from services.tablet.lesson_so_far import LessonSoFar
+from services.tablet.messages import AttemptList, Choose, Correction, Status, Teaching, Turn, Wish
 from services.tablet.room_state import RoomState
+from services.tablet.socket_description import describe_socket
 
 STATUS_PERIOD_S = 0.5
 TOGETHER_S = 0.05
@@ -33,7 +35,11 @@ _HEADERS = {
 _POLICY_VIOLATION = 1008
 _TRY_AGAIN_LATER = 1013
 
+AGREED_NS = 1_000_000_000
+"""A choice has reached the evaluation by then, or is lost: what it says afterwards is what counts."""
 
+Told = ActivityRequest | PupilTurn | PupilCorrections | AttemptsBegin | FeedbackRequest
+"""What tablets have to say to the other processes."""
 NOTHING_TAUGHT = Teaching(languages=[], actions={})
 
 
@@ -44,7 +50,10 @@ class TabletServer:
         room: its state.
         clock_ns: CLOCK_MONOTONIC.
         teaching: what can be chosen, and the words of it.
-        ask: takes a choice to the evaluation.
+        tell: takes what tablets say to the bus.
+
+    Attributes:
+        listed: the list of attempts as every page has it; None while the evaluation has yet to tell what it remembers.
     """
 
     def __init__(
@@ -52,16 +61,25 @@ class TabletServer:
         room: RoomState,
         clock_ns: Callable[[], int],
         teaching: Teaching = NOTHING_TAUGHT,
-        ask: Callable[[ActivityRequest], None] = lambda _: None,
+        tell: Callable[[Told], None] = lambda _: None,
     ) -> None:
         self.room = room
         self.audience = Audience()
-        self.attempts = Attempts()
+        self._so_far = LessonSoFar(tell, clock_ns())
+        self.listed: AttemptList | None = None
         self.teaching = teaching
-        self._ask = ask
+        self._tell = tell
         self._chosen: ActivityRequest | None = None
+        self._chosen_ns = 0
+        self._turn = PupilTurn(NOBODY, 0)
+        self._recorder: RecorderHealth | None = None
         self._clock_ns = clock_ns
         self._soon: asyncio.TimerHandle | None = None
+
+    @property
+    def attempts(self) -> Attempts:
+        """Those on the list."""
+        return self._so_far.attempts
 
     def receive_motion(self, motion: Motion) -> None:
         """A live motion arrived: show it to everyone."""
@@ -75,31 +93,95 @@ class TabletServer:
         self.audience.show_motion(frame)
 
     def receive_health(self, health: Health) -> None:
-        """A process said how it is. Which action is asked for is shown at once: somebody is waiting for it."""
-        asked = self.room.asked
-        self.room.receive_health(health, self._clock_ns())
+        """A process said how it is. Which action is asked for and who is up is shown at once: somebody is waiting for it."""
+        asked, now_ns = self.room.asked, self._clock_ns()
+        self.room.receive_health(health, now_ns)
+        if health.process == EVALUATION and health.evaluation is not None:
+            self._agree(health.evaluation, now_ns)
+            self._so_far.hear_evaluation(health.evaluation, now_ns)
+        if health.process == RECORDER and health.recorder is not None:
+            self._so_far.hear_recorder(health.recorder, now_ns)
+            self._correct_again(health.recorder)
         if self.room.asked != asked:
             self.show_status()
+        if health.process in (EVALUATION, RECORDER):
+            self.show_attempts()
 
     def receive_feedback(self, feedback: Feedback) -> None:
         """An attempt ended: keep it and show it to everyone."""
-        attempt = self.attempts.take(feedback)
-        if attempt is not None:
-            self.audience.show_attempt(attempt.model_dump_json())
+        self._so_far.take(feedback)
+        self.show_attempts()
+
+    def receive_remembered(self, remembered: RememberedFeedback) -> None:
+        """The evaluation remembers an attempt."""
+        self._so_far.hear_remembered(remembered, self._clock_ns())
+        self.show_attempts()
+
+    def wish(self, wish: Wish) -> None:
+        """Somebody at a tablet wants something."""
+        if isinstance(wish, Choose):
+            self.choose(wish.activity)
+        elif isinstance(wish, Turn):
+            self.call(wish.pupil)
+        elif isinstance(wish, Correction):
+            self.correct(wish.attempt, wish.pupil)
+        else:
+            self.begin_anew()
 
     def choose(self, activity: str | None) -> None:
         """A tablet says what pupils shall do; None for whichever it is."""
         if activity is not None and activity not in self.teaching.actions:
             self._reject_client_message()
             return
-        self._chosen = ActivityRequest(activity or ANY)
-        self._ask(self._chosen)
+        self._chosen, self._chosen_ns = ActivityRequest(activity or ANY), self._clock_ns()
+        self._tell(self._chosen)
+
+    def call(self, pupil: str | None) -> None:
+        """A tablet says who is up; None for nobody who is named."""
+        self._turn = PupilTurn(pupil or NOBODY, self._clock_ns())
+        self._tell(self._turn)
+
+    def correct(self, attempt: int, pupil: str | None) -> None:
+        """A tablet says whose an attempt was after all."""
+        if not self.attempts.correct(PupilCorrection(attempt, pupil or NOBODY)):
+            self._reject_client_message()
+            return
+        self._tell(self.attempts.corrections)
+        self.show_attempts()
+
+    def begin_anew(self) -> None:
+        """A tablet says that the list of attempts begins anew. A lesson that is recorded goes on with its numbers."""
+        if self.room.recording(self._clock_ns()) is not None:
+            self._reject_client_message()
+            return
+        self._so_far.begin(self._clock_ns())
+        self.show_attempts()
+
+    def _agree(self, evaluation: EvaluationHealth, now_ns: int) -> None:
+        """Either process may have been started again, or a word have been lost on its way. Of two turns the later one counts."""
+        if evaluation.chosen_by == "site":
+            if self._chosen is not None:
+                self._tell(self._chosen)
+        elif now_ns - self._chosen_ns > AGREED_NS:
+            self._chosen = ActivityRequest(evaluation.activity)
+        said = PupilTurn(evaluation.pupil, evaluation.pupil_since_ns)
+        if self._turn.t_ns < said.t_ns <= now_ns:
+            self._turn = said
+        elif said.t_ns < self._turn.t_ns:
+            self._tell(self._turn)
+
+    def _correct_again(self, recorder: RecorderHealth) -> None:
+        """What was corrected during an interruption of the lesson is not in it yet."""
+        before, self._recorder = self._recorder, recorder
+        interrupted = before is not None and before.lesson == recorder.lesson and recorder.gaps > before.gaps
+        if interrupted and self.attempts.corrections.corrections:
+            self._tell(self.attempts.corrections)
 
     def set_alive(self, process: str, alive: bool) -> None:
         """A process joined or left the bus. Everyone is told soon: an outage may end before the next status is due."""
         self.room.set_alive(process, alive, self._clock_ns())
         if process == EVALUATION and alive and self._chosen is not None:
-            self._ask(self._chosen)  # It was started again, and begins with what the site file says.
+            self._tell(self._chosen)  # It was started again, and begins with what the site file says.
         if self._soon is None:
             self._soon = asyncio.get_running_loop().call_later(TOGETHER_S, self._show_presence)
 
@@ -117,20 +199,28 @@ class TabletServer:
 
     def session(self, socket: WebSocket) -> Session:
         """A session for a client whose malformed messages are counted here."""
-        return Session(socket, self._clock_ns, self._reject_client_message, self.choose)
+        return Session(socket, self._clock_ns, self._reject_client_message, self.wish)
 
     def show_status(self) -> None:
         """Show the room's state to everyone."""
         self.audience.show_status(self.status().model_dump_json())
+
+    def show_attempts(self) -> None:
+        """Show the list of attempts to everyone, if it is another one than was shown last."""
+        shown = self._so_far.shown(self._clock_ns(), restarted=self.room.restarted)
+        if shown is not None and shown != self.listed:
+            self.listed = shown
+            self.audience.show_attempts(shown.model_dump_json())
 
     def _show_presence(self) -> None:
         self._soon = None
         self.show_status()
 
     async def show_statuses(self) -> None:
-        """Show the room's state to everyone twice a second, for ever."""
+        """Show the room's state to everyone twice a second, for ever, and the list of attempts once nobody is waited for."""
         while True:
             self.show_status()
+            self.show_attempts()
             await asyncio.sleep(STATUS_PERIOD_S)
 
     def _reject_client_message(self) -> None:
@@ -186,13 +276,13 @@ def create_app(server: TabletServer, page: Path | None) -> FastAPI:
             return
         session = server.session(socket)
         session.offer_status(server.status().model_dump_json())
-        for attempt in server.attempts.shown:
-            session.offer_attempt(attempt.model_dump_json())
+        if server.listed is not None:
+            session.offer_attempts(server.listed.model_dump_json())
         await server.audience.attend(session)
 
     if page is not None:
         app.mount("/", StaticFiles(directory=page, html=True), name="page")
-    _describe_socket(app)
+    describe_socket(app)
     return app
 
 
@@ -200,24 +290,3 @@ def _same_origin(socket: WebSocket) -> bool:
     """A browser names the page that opens a socket; only the box's own page may. Other programs send no origin."""
     origin = socket.headers.get("origin")
     return origin is None or urlsplit(origin).netloc == socket.headers.get("host")
-
-
-def _describe_socket(app: FastAPI) -> None:
-    """Add the socket's messages to the OpenAPI description, which leaves sockets out, so that the page's types cover them."""
-    describe = app.openapi
-
-    def openapi() -> dict[str, Any]:
-        document = describe()
-        modes: list[tuple[type[Any], Any]] = [
-            (Status, "serialization"),
-            (Pong, "serialization"),
-            (Attempt, "serialization"),
-            (Ack, "validation"),
-            (Choose, "validation"),
-            (Ping, "validation"),
-        ]
-        _, definitions = models_json_schema(modes, ref_template="#/components/schemas/{model}")
-        document.setdefault("components", {}).setdefault("schemas", {}).update(definitions["$defs"])
-        return document
-
-    app.openapi = openapi  # type: ignore[method-assign]  # FastAPI's documented way to extend the description

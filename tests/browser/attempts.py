@@ -46,6 +46,7 @@ def unseen(feedback: Feedback) -> Feedback:
         praise="",
         cue="",
         cue_certainty=0.0,
+        fine=False,
         judgements=tuple(msgspec.structs.replace(one, severity=None, sigma=None) for one in feedback.judgements),
         measures=tuple(msgspec.structs.replace(one, value=None, sigma=None, verdict="unknown") for one in feedback.measures),
         states=np.full_like(feedback.states, JointState.GUESSED),

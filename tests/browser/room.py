@@ -6,11 +6,13 @@ import time
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+import msgspec
 import numpy as np
 
 from models.camera.rig import Rig
 from models.config.site import SITE_VERSION, CameraConfig, Site, TabletConfig
 from models.messages import codec, topics
+from models.messages.attempts import REMEMBERED, AttemptsBegin, FeedbackRequest
 from models.messages.feedback import ANY, ActivityRequest, Feedback
 from models.messages.health import (
     CameraHealth,
@@ -23,17 +25,20 @@ from models.messages.health import (
     SupervisorHealth,
 )
 from models.messages.motion import CameraUse, JointState, Motion
+from models.messages.pupil import NOBODY, PupilCorrections, PupilTurn
 from models.messages.trouble import Trouble
-from models.process import Bus, ProcessContext, Resources
+from models.process import Bus, Delivery, ProcessContext, Resources
 from models.skeleton import coco
 from services.bus.memory import MemoryBus, MemoryRouter
+from services.evaluation.memory import Memory
 from services.tablet import process
 from tests.browser.attempts import ending
 from tests.synthetic.gym import ring_rig
 from tests.synthetic.person import Person
 
 CAMERAS = ("cam0", "cam1", "cam2", "cam3")
-LIVE_HZ = 30.0
+LIVE_HZ = 15.0
+"""Half the rate of a box: software draws each of them."""
 MACHINE = MachineHealth(2.9, 4.0, 3100.0, 41_000.0, 63.0, 1_700_000_000_000_000_000, 0.0)
 
 
@@ -55,6 +60,7 @@ class Scene:
         states: (17,) state of each joint.
         lost: cameras whose processes are gone.
         given_up: processes, by their names on the bus, that the supervisor starts no more.
+        restarted: processes that the supervisor has started again.
         fresh_hz: inferences a second of every camera.
         pupil: what fusion says about the pupil.
         troubles: what fusion says is wrong.
@@ -68,12 +74,29 @@ class Scene:
     states: dict[int, JointState] = field(default_factory=dict)
     lost: frozenset[str] = frozenset()
     given_up: frozenset[str] = frozenset()
+    restarted: frozenset[str] = frozenset()
     fresh_hz: float = 14.6
     pupil: str = "found"
     troubles: tuple[Trouble, ...] = ()
     machine: MachineHealth = MACHINE
     evaluating: Literal["waiting", "moving", "unknown"] | None = "waiting"
     recorded_s: float | None = None
+
+
+_OF_ATTEMPTS = (topics.feedback(), topics.attempts_begin(), topics.feedback_request(), topics.pupil_corrections())
+
+
+@dataclass
+class _Lesson:
+    """What is being recorded."""
+
+    began_ns: int
+    attempts: list[int] = field(default_factory=list)
+
+    def said(self, recorded_s: float) -> RecorderHealth:
+        """As the recorder says it."""
+        newest = tuple(self.attempts[-REMEMBERED:])
+        return RecorderHealth("2026-11-22-7b", "7b, throwing", recorded_s, 2_500_000, 0, self.began_ns, len(self.attempts), newest)
 
 
 class Room:
@@ -87,6 +110,10 @@ class Room:
         self._fusion = self._router.open()
         self._evaluation: MemoryBus | None = None
         self._activity: tuple[str, Literal["site", "tablet"]] = (ANY, "site")
+        self._turn = PupilTurn(NOBODY, 0)
+        self._memory = Memory()
+        self._lesson: _Lesson | None = None
+        self._corrections = self._fusion.subscribe(topics.pupil_corrections(), keep=100)
         self._said_of_evaluation: object = None
         self._edges: dict[str, MemoryBus] = {}
         self._stop = threading.Event()
@@ -124,9 +151,10 @@ class Room:
             self._server.stop()
             self._server = None
 
-    def attempt(self, made: Feedback) -> int:
-        """Let an attempt end now; returns its id."""
-        feedback = ending(made, time.monotonic_ns() - 400_000_000)
+    def attempt(self, made: Feedback, ago_s: float = 0.4) -> int:
+        """Let an attempt of whoever is up have ended so long ago; returns its id."""
+        own = msgspec.structs.replace(made, pupil=made.pupil or self._turn.pupil)
+        feedback = ending(own, time.monotonic_ns() - round(ago_s * 1e9))
         self._fusion.publish(topics.feedback(), codec.encode(feedback))
         return feedback.id
 
@@ -135,8 +163,22 @@ class Room:
         """What the synthetic evaluation was asked for; empty for any action."""
         return self._activity[0]
 
+    @property
+    def pupil(self) -> str:
+        """Who is up as the synthetic evaluation was told; empty for nobody."""
+        return self._turn.pupil
+
+    def corrections(self) -> list[PupilCorrections]:
+        """What was corrected since this was asked last, for the lesson."""
+        found = []
+        while (delivery := self._corrections.receive(0.0)) is not None:
+            found.append(codec.decode(delivery.payload, PupilCorrections))
+        return found
+
     def _publish(self) -> None:
         asked = self._fusion.subscribe(topics.activity_request(), keep=4)
+        called = self._fusion.subscribe(topics.pupil_turn(), keep=100)
+        told = self._fusion.subscribe(*_OF_ATTEMPTS, keep=100)
         sequence, t_person_s, healthy_ns = 0, 0.0, 0
         while not self._stop.wait(1 / LIVE_HZ):
             scene = self.scene
@@ -149,6 +191,12 @@ class Room:
             self._keep_edges(scene)
             while (request := asked.receive(0.0)) is not None:
                 self._activity = codec.decode(request.payload, ActivityRequest).activity, "tablet"
+            while (call := called.receive(0.0)) is not None:
+                turn = codec.decode(call.payload, PupilTurn)
+                self._turn = turn if turn.t_ns > self._turn.t_ns else self._turn
+            self._keep_lesson(scene, now_ns)
+            while (delivery := told.receive(0.0)) is not None:
+                self._keep_attempts(delivery)
             self._keep_evaluation(scene, now_ns)
             if now_ns - healthy_ns > 1_000_000_000:
                 healthy_ns = now_ns
@@ -188,31 +236,63 @@ class Room:
             if self._evaluation is not None:
                 self._evaluation.close()
                 self._evaluation = None
+                # It knows of nothing when it is started again.
+                self._turn, self._memory, self._activity = PupilTurn(NOBODY, 0), Memory(), (ANY, "site")
             return
         if self._evaluation is None:
             self._evaluation = self._router.open()
             self._evaluation.declare_alive(topics.alive("evaluation"))
         # Said at once when it changes, and else about once a second.
-        news = (*self._activity, scene.evaluating, now_ns // 1_000_000_000)
+        memory = self._memory
+        listed = (memory.since_ns, memory.count, memory.newest)
+        news = (*self._activity, self._turn, scene.evaluating, *listed, now_ns // 1_000_000_000)
         if news == self._said_of_evaluation:
             return
         self._said_of_evaluation = news
-        health = EvaluationHealth(*self._activity, scene.evaluating, 0, 0.4, 31.0, 0, 0)
+        turn = self._turn
+        health = EvaluationHealth(*self._activity, scene.evaluating, 0, 0.4, 31.0, 0, 0, turn.pupil, turn.t_ns, *listed)
         self._say(self._evaluation, Health("evaluation", 97, now_ns, "ok", (), 0.05, 150.0, evaluation=health))
+
+    def _keep_attempts(self, delivery: Delivery) -> None:
+        """The evaluation remembers and the recorder writes what was published."""
+        memory = self._memory
+        if delivery.topic == topics.feedback():
+            feedback = codec.decode(delivery.payload, Feedback)
+            memory.note(feedback)
+            if self._lesson is not None:
+                self._lesson.attempts.append(feedback.id)
+        elif self._evaluation is None:
+            return
+        elif delivery.topic == topics.attempts_begin():
+            memory.begin(codec.decode(delivery.payload, AttemptsBegin))
+        elif delivery.topic == topics.pupil_corrections():
+            memory.correct(codec.decode(delivery.payload, PupilCorrections).corrections)
+        else:
+            answer = memory.before(codec.decode(delivery.payload, FeedbackRequest).before)
+            self._evaluation.publish(topics.remembered_feedback(), codec.encode(answer))
+
+    def _keep_lesson(self, scene: Scene, now_ns: int) -> None:
+        if scene.recorded_s is None:
+            self._lesson = None
+        elif self._lesson is None:
+            self._lesson = _Lesson(now_ns)
 
     def _publish_health(self, scene: Scene, now_ns: int) -> None:
         for index, (camera, bus) in enumerate(self._edges.items()):
             rates = CameraHealth(camera, 30.0, scene.fresh_hz - 0.3 * index, 15.0, 12 + 7 * index, 21.0 + 3 * index, "thunder", {})
             self._say(bus, Health(f"edge-{camera}", 100 + index, now_ns, "ok", (), 0.36, 214.0, camera=rates))
-        restarts = tuple(Restarts(name, 5, now_ns, "was ended by SIGKILL", "ended 6 times") for name in sorted(scene.given_up))
+        restarts = (
+            *(Restarts(name, 5, now_ns, "was ended by SIGKILL", "ended 6 times") for name in sorted(scene.given_up)),
+            *(Restarts(name, 1, now_ns, "was ended by SIGKILL", "") for name in sorted(scene.restarted)),
+        )
         supervisor = SupervisorHealth("0.1.0", now_ns, restarts)
         for name in scene.given_up:
             self._say(self._fusion, Health(name, 98, now_ns, "failed", (Trouble("given_up", "ended 6 times"),), 0.0, 0.0))
         said = Health("supervisor", 98, now_ns, "ok", (), 0.01, 30.0, machine=scene.machine, supervisor=supervisor)
         self._say(self._fusion, said)
         fusion = FusionHealth(29.8, 4.2, 0.83, 0, {}, "found" if scene.pupil == "found" else "searching")
-        lesson = "" if scene.recorded_s is None else "2026-11-22-7b"
-        recorder = RecorderHealth(lesson, "7b, throwing", scene.recorded_s or 0.0, 2_500_000, 0)
+        lesson = self._lesson
+        recorder = RecorderHealth("", "", 0.0, 0, 0) if lesson is None else lesson.said(scene.recorded_s or 0.0)
         self._say(self._fusion, Health("recorder", 98, now_ns, "ok", (), 0.01, 60.0, recorder=recorder))
         if "fusion" not in scene.given_up:
             self._say(
@@ -248,7 +328,7 @@ class _Server:
         context = tablet_context(self._bus, port, self._stop)
         self._thread = threading.Thread(target=process.main, args=(context,), name="tablet-server", daemon=True)
         self._thread.start()
-        _wait_until_listening(port, self._thread)
+        _wait_until_joined(router, self._thread)
 
     def stop(self) -> None:
         self._stop.set()
@@ -271,14 +351,14 @@ def _site(port: int) -> Site:
     )
 
 
-def _wait_until_listening(port: int, thread: threading.Thread) -> None:
+def _wait_until_joined(router: MemoryRouter, thread: threading.Thread) -> None:
+    # It listens earlier than it subscribes: nobody would hear what is said in between.
     deadline_s = time.monotonic() + 30
     while time.monotonic() < deadline_s and thread.is_alive():
-        with socket.socket() as probe:
-            if probe.connect_ex(("127.0.0.1", port)) == 0:
-                return
+        if topics.alive("tablet") in router.tokens():
+            return
         time.sleep(0.02)
-    raise RuntimeError(f"the tablet process does not listen on port {port}")
+    raise RuntimeError("the tablet process does not join the bus")
 
 
 def with_scene(room: Room, **changes: object) -> None:

@@ -66,8 +66,8 @@ def test_the_figure_moves_while_the_pupil_does(page: Page, room: Room) -> None:
     shown = open_live(page, room)
     before, figures = shown.picture(), shown.number("figures")
     shown.wait_until(f"Number(d.figures) >= {figures + 5}")
-    assert (np.abs(shown.picture() - before).max(axis=-1) > 0.2).sum() > 300
-    assert shown.coloured_pixels() > 1000
+    assert (np.abs(shown.picture() - before).max(axis=-1) > 0.2).sum() > 75
+    assert shown.coloured_pixels() > 250
 
 
 def test_nothing_is_drawn_while_nothing_changes(page: Page, room: Room) -> None:
@@ -114,7 +114,7 @@ def test_server_gone_is_grey_with_words_and_server_back_is_live(page: Page, room
     shown.wait_for_phase("offline")
     expect(page.get_by_text("No connection to the box")).to_be_visible()
     assert shown.number("coloured") == 0
-    assert shown.coloured_pixels() < 50
+    assert shown.coloured_pixels() < 13
     expect(page.locator("[data-camera]")).to_have_count(0)
     expect(page.get_by_text("Good")).to_have_count(0)
     room.start_server()
@@ -128,7 +128,7 @@ def test_motion_that_stops_becomes_grey_and_says_for_how_long(page: Page, room: 
     shown.wait_for_phase("stale")
     expect(page.get_by_text("No new movement for")).to_be_visible()
     shown.wait_until("Number(d.coloured) === 0")
-    assert shown.coloured_pixels() < 50
+    assert shown.coloured_pixels() < 13
     with_scene(room, publishing=True)
     shown.wait_for_phase("live")
 
@@ -172,7 +172,7 @@ def test_guesses_alone_are_never_live(page: Page, room: Room) -> None:
     shown = open_live(page, room)
     with_scene(room, states=dict.fromkeys(range(coco.COUNT), JointState.GUESSED))
     shown.wait_for_phase("stale")
-    assert shown.coloured_pixels() < 50
+    assert shown.coloured_pixels() < 13
 
 
 def test_a_joint_that_is_not_sure_is_grey_on_a_coloured_figure(page: Page, room: Room) -> None:
@@ -243,12 +243,10 @@ def test_a_warning_on_a_phone_stands_above_the_figure(browser: Browser, room: Ro
     with_scene(room, fresh_hz=5.0)
     page = browser.new_page(viewport={"width": width, "height": height}, has_touch=True, is_mobile=True)
     open_live(page, room)
-    warning = page.get_by_text("The box is busy")
-    warning.wait_for()
-    banner, canvas = warning.bounding_box(), page.locator("canvas").bounding_box()
-    assert banner is not None
-    assert canvas is not None
-    assert banner["y"] + banner["height"] <= canvas["y"]
+    # On a busy machine the page may have more to say for a moment: `evaluate` waits for the warning, as `bounding_box` does not.
+    bottom_px = page.get_by_text("The box is busy").evaluate("warning => warning.getBoundingClientRect().bottom")
+    top_px = page.locator("canvas").evaluate("canvas => canvas.getBoundingClientRect().top")
+    assert 0 < bottom_px <= top_px
     # The canvas follows the window with the next picture, which a busy machine draws late.
     page.wait_for_function("() => document.documentElement.scrollHeight <= window.innerHeight")
     page.close()

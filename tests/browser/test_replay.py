@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -25,9 +26,15 @@ STARTING_S = 120.0
 
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """Of the page of a replay that goes on for ever."""
     folder = tmp_path_factory.mktemp("lesson")
-    lesson, port = write_gym_lesson(folder, Gym(seconds=8.0)), free_port()
+    with playing(write_gym_lesson(folder, Gym(seconds=8.0)), folder) as address:
+        yield address
+
+
+@contextmanager
+def playing(lesson: Path, folder: Path) -> Iterator[str]:
+    """`kinebox replay`, which goes on for ever; the address of its page."""
+    port = free_port()
     command = [sys.executable, "-m", "services.cli.main", "replay", str(lesson), "--port", str(port), "--data", str(ROOT / "build")]
     with (
         (folder / "output").open("wb") as output,

@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ import pytest
 from services.doctor.report import as_text
 from tests.integration.box import ROOT, Box
 from tests.integration.doctor_troubles import TROUBLES
+from tests.integration.doctor_troubles.running_box import STANDING
 from tests.integration.doctor_troubles.trouble import examined
 from tests.integration.house import build_house
 from tests.integration.waiting import until
@@ -19,6 +21,13 @@ from tests.integration.waiting import until
 pytestmark = pytest.mark.slow
 
 DOCUMENT = ROOT / "docs" / "doctor.md"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def standing_box() -> Iterator[None]:
+    """Ended after the last test of the module."""
+    yield
+    STANDING.end()
 
 
 @pytest.mark.parametrize("name", TROUBLES)

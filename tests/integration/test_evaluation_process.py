@@ -8,7 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any, Final
@@ -25,18 +25,19 @@ from models.messages import codec, topics
 from models.messages.feedback import ActivityRequest, Feedback
 from models.messages.health import EvaluationHealth, Health
 from models.messages.motion import JointState, Motion
+from models.messages.pupil import PupilCorrections
 from models.motions.motion import Attempt
 from models.process import Bus
 from models.skeleton import coco
 from services.site_file.rendering import render
-from services.tablet import attempt_replay, motion_frame, process
+from services.tablet import attempt_replay, motion_frame
 from tests.bench.teaching.cases import Case
 from tests.bench.teaching.lessons import lesson_of
 from tests.bench.teaching.twinned import truth_of
-from tests.browser.room import tablet_context
 from tests.integration.fusion_room import RIG, SITE
+from tests.integration.page_server import next_list, page_server
 from tests.integration.test_recorder_process import ZenohRoom
-from tests.integration.waiting import DEADLINE_S, free_port, until
+from tests.integration.waiting import DEADLINE_S, until
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(240)]
 
@@ -258,32 +259,6 @@ def test_what_cannot_be_taught_is_one_line_and_code_2(tmp_path: Path, config: Ev
     box.bus.close()
 
 
-@contextmanager
-def page_server(room: ZenohRoom, folder: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    """The tablet process on the same bus, with a page of one line; its address."""
-    (folder / "page").mkdir()
-    (folder / "page" / "index.html").write_text("<title>page</title>")
-    monkeypatch.setattr(process, "PAGE", folder / "page")
-    port, stop = free_port(), threading.Event()
-    with ExitStack() as stack:
-        bus = room.open()
-        stack.callback(bus.close)
-        thread = threading.Thread(target=process.main, args=(tablet_context(bus, port, stop),), daemon=True)
-        thread.start()
-        stack.callback(thread.join, DEADLINE_S)
-        stack.callback(stop.set)
-        address = f"http://127.0.0.1:{port}/"
-        until(lambda: _answers(address), "the page's server")
-        yield address
-
-
-def _answers(address: str) -> bool:
-    try:
-        return httpx.get(f"{address}api/status").is_success
-    except httpx.TransportError:
-        return False
-
-
 def test_while_the_evaluation_is_away_the_figure_goes_on_and_its_choice_outlives_it(
     box: Box, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -330,15 +305,16 @@ def test_a_tablet_gets_each_attempt_as_it_ends_and_one_that_comes_later_gets_the
             playing = Lesson(box.bus)
             box.wait_for(lambda _: len(box.told) >= 2, evaluation.pid)
         playing.close()
-        early = _attempts(tablet, 2)
+        early = next_list(tablet, 2)["attempts"][:2]
         with connect(address.replace("http", "ws") + "ws") as later:
-            assert _attempts(later, 2) == early
+            assert next_list(later)["attempts"][:2] == early
         listed = httpx.get(f"{address}api/attempts").json()
         teaching = httpx.get(f"{address}api/teaching").json()
         replay = attempt_replay.unpack(httpx.get(f"{address}api/attempts/{early[0]['id']}/replay").content)
         missing = httpx.get(f"{address}api/attempts/1/replay")
     assert listed[:2] == early
     assert [attempt["action"] for attempt in early] == [attempt.action for attempt in playing.attempts[:2]]
+    assert [attempt["number"] for attempt in early] == [1, 2]
     for attempt in early:
         action = teaching["actions"][attempt["action"]]
         assert action["title"].keys() == {"en", "zh", "de", "es"}
@@ -348,11 +324,110 @@ def test_a_tablet_gets_each_attempt_as_it_ends_and_one_that_comes_later_gets_the
     assert (missing.status_code, missing.headers["content-type"]) == (404, "application/json")
 
 
-def _attempts(tablet: Any, count: int) -> list[dict[str, Any]]:
-    """The first attempts that a tablet is told of."""
-    found: list[dict[str, Any]] = []
-    while len(found) < count:
-        message = tablet.recv(timeout=DEADLINE_S)
-        said = json.loads(message) if isinstance(message, str) else {}
-        found += [said] if said.get("type") == "attempt" else []
-    return found
+class Tablets:
+    """A page that is open, and what the box says to it."""
+
+    def __init__(self, address: str) -> None:
+        self.address = address
+
+    def say(self, **message: Any) -> None:
+        """As from a tablet that has just come."""
+        with connect(self.address.replace("http", "ws") + "ws") as tablet:
+            tablet.send(json.dumps(message))
+            tablet.send(json.dumps({"type": "ping", "id": 1}))
+            while '"pong"' not in str(tablet.recv(timeout=DEADLINE_S)):
+                pass
+
+    def choose(self, activity: str) -> None:
+        """Somebody says what pupils do, and sees that it is so."""
+        self.say(type="choose", activity=activity)
+        until(lambda: self.asked["activity"] == activity, lambda: f"{activity}; the page says {self.asked}")
+
+    def call(self, pupil: str | None) -> None:
+        """Somebody says who is up, and sees that it is so."""
+        self.say(type="turn", pupil=pupil)
+        until(lambda: self.up == pupil, lambda: f"pupil {pupil}; the page says {self.up}")
+
+    @property
+    def asked(self) -> dict[str, Any]:
+        """What pupils are to do and who is up, as every page shows it."""
+        said: dict[str, Any] = httpx.get(f"{self.address}api/status").json()["evaluation"]
+        return said
+
+    @property
+    def up(self) -> str | None:
+        """Who is up as every page shows it."""
+        said: str | None = self.asked["pupil"]
+        return said
+
+    @property
+    def whose(self) -> list[str | None]:
+        """The pupils of the attempts that are listed, the oldest first."""
+        return [attempt["pupil"] for attempt in httpx.get(f"{self.address}api/attempts").json()]
+
+
+def test_attempts_are_of_whoever_a_tablet_called_also_after_kill_9_and_can_be_corrected(
+    box: Box, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    corrections = box.bus.subscribe(topics.pupil_corrections(), keep=10)
+    with page_server(box.room, tmp_path, monkeypatch) as address:
+        tablets = Tablets(address)
+        with box.evaluation() as evaluation:
+            tablets.call("7")
+            playing = Lesson(box.bus)
+            box.wait_for(lambda _: len(box.told) >= 1, evaluation.pid)
+            tablets.call("B12")
+            os.kill(evaluation.pid, signal.SIGKILL)
+        before = len(box.told)
+        with box.evaluation() as again:
+            box.wait_for(lambda said: said.pupil == "B12", again.pid)
+            box.wait_for(lambda said: playing.over and said.state == "unknown", again.pid)
+        playing.close()
+        assert [feedback.pupil for feedback in box.told] == ["7"] * before + ["B12"] * (len(box.told) - before)
+        assert len(box.told) > before
+        until(lambda: len(tablets.whose) == len(box.told), "all attempts on the list")
+        assert tablets.whose == [feedback.pupil for feedback in box.told]
+        tablets.say(type="correction", attempt=box.told[-1].id, pupil="8")
+        assert tablets.whose == [*(feedback.pupil for feedback in box.told[:-1]), "8"]
+        delivery = corrections.receive(DEADLINE_S)
+        assert delivery is not None
+        (corrected,) = codec.decode(delivery.payload, PupilCorrections).corrections
+        assert (corrected.attempt, corrected.pupil) == (box.told[-1].id, "8")
+
+
+def test_who_is_up_and_what_was_chosen_outlive_the_pages_server_and_then_the_evaluation(
+    box: Box, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with box.evaluation() as evaluation:
+        with page_server(box.room, tmp_path, monkeypatch) as address:
+            tablets = Tablets(address)
+            assert tablets.up is None
+            for name in ("Anna", "EMMA2"):
+                tablets.say(type="turn", pupil=name)
+            assert tablets.up is None
+            assert httpx.get(f"{address}api/status").json()["rejected_client_messages"] == 2
+            tablets.call("7")
+            tablets.choose("squat")
+        with page_server(box.room, tmp_path, monkeypatch) as address:
+            tablets = Tablets(address)
+            until(lambda: tablets.up == "7", "the pupil of before on the page of a new server")
+            assert (tablets.asked["activity"], tablets.asked["activity_chosen_by"]) == ("squat", "tablet")
+            os.kill(evaluation.pid, signal.SIGKILL)
+            with box.evaluation() as again:
+                box.wait_for(lambda said: (said.pupil, said.activity, said.chosen_by) == ("7", "squat", "tablet"), again.pid)
+                tablets.call(None)
+                box.wait_for(lambda said: said.pupil == "", again.pid)
+
+
+def test_where_the_evaluation_and_the_pages_server_die_together_nobody_is_up(
+    box: Box, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with page_server(box.room, tmp_path, monkeypatch) as address, box.evaluation():
+        Tablets(address).call("7")
+        Tablets(address).choose("squat")
+    with page_server(box.room, tmp_path, monkeypatch) as address, box.evaluation() as again:
+        said = box.wait_for(lambda _: True, again.pid)
+        assert (said.pupil, said.pupil_since_ns) == ("", 0)
+        until(lambda: Tablets(address).asked["activity_chosen_by"] == "site", "the page to know that nobody has chosen")
+        assert Tablets(address).asked["activity"] is None
+        assert Tablets(address).up is None

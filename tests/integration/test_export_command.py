@@ -1,5 +1,6 @@
 """`kinebox export` on lessons that were recorded: what is written, under which names, and what is refused with nothing written."""
 
+import datetime as dt
 import errno
 import json
 import subprocess
@@ -18,10 +19,13 @@ from models.messages.lesson import Entry, FusionLog
 from models.messages.motion import JointState, Motion
 from services.cli import export as command
 from services.cli.export import Order, export
+from services.cli.lesson_attempts import recorded_feedbacks
 from services.evaluation.track import Track, known_track
 from services.lesson.export.kinds import Format
 from services.lesson.imports.file import read_motion
 from services.lesson.lesson_file import LessonWriter
+from services.lesson.lesson_reader import open_lesson
+from services.lesson.stretches import stretches
 from tests.installed import ROOT
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header
 from tests.takes import FRAME_S, moving, performed
@@ -121,12 +125,63 @@ def test_every_format_is_written_with_its_attempts_and_nothing_else(tmp_path: Pa
         assert [each["keyframes_s"]["peak"] for each in about["attempts"]] == pytest.approx([20 / 30, 2.0], abs=1e-6)
 
 
+@pytest.mark.parametrize(("asked", "written"), [("", "B12"), ("P07", "P07")])
+def test_the_files_of_one_attempt_say_whose_it_was_unless_that_is_told(tmp_path: Path, asked: str, written: str) -> None:
+    own = msgspec.structs.replace(feedback_of(BEGIN_NS, 2, 40, (4, 10, 20, 36)), pupil="B12")
+    lesson = recorded(tmp_path / "lessons", list(log_of(WHOLE.track, BEGIN_NS, (own,))))
+    export(lesson, tmp_path, None, Order(Format.TRC, tmp_path / "out", 1, asked))
+    assert json.loads((tmp_path / "out/lesson-attempt1.trc.json").read_text())["pupil"] == written
+
+
 def test_one_attempt_is_cut_out_with_what_is_around_it(tmp_path: Path) -> None:
     export(with_attempts(tmp_path / "lessons"), tmp_path, None, Order(Format.TRC, tmp_path, 2, ""))
     back = read_motion(tmp_path / "lesson-attempt2.trc")
     np.testing.assert_allclose(back.joints_m, WHOLE.track.joints_m[42:81], atol=2e-5)
     (attempt,) = json.loads((tmp_path / "lesson-attempt2.trc.json").read_text())["attempts"]
     assert attempt["keyframes_s"] == pytest.approx({"start": 2 / 30, "exertion": 8 / 30, "peak": 18 / 30, "end": 34 / 30}, abs=1e-6)
+
+
+def begun(frame: int) -> str:
+    """When a frame was, as the day's clock had it."""
+    told = header()
+    after_s = (BEGIN_NS - told.started_ns) * 1e-9 + frame * FRAME_S
+    return f"{dt.datetime.fromtimestamp(told.started_s + after_s, tz=dt.UTC).astimezone():%H:%M:%S}"
+
+
+def test_what_was_written_of_an_attempt_is_said_so_that_nobody_takes_another_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    export(with_attempts(tmp_path / "lessons"), tmp_path, None, Order(Format.TRC, tmp_path, 2))
+    assert capsys.readouterr().out == f"{tmp_path}/lesson-attempt2.trc: 39 frames, 0:01, attempt 2: badminton_clear, {begun(44)}\n"
+
+
+def test_of_one_attempt_only_its_own_frames_are_held_in_memory(tmp_path: Path) -> None:
+    with open_lesson(with_attempts(tmp_path)) as lesson:
+        told = recorded_feedbacks(lesson)
+        (whole,) = stretches(lesson.parts(), FRAME_S, told)
+        (part,) = stretches(lesson.parts(), FRAME_S, told, only=2)
+    assert (len(whole.track), [each.number for each in whole.attempts]) == (len(WHOLE.track), [1, 2])
+    assert (len(part.track), [each.number for each in part.attempts]) == (39, [2])
+    np.testing.assert_array_equal(part.track.joints_m, whole.track.joints_m[42:81])
+
+
+def test_with_one_attempt_so_much_around_it_is_held_as_is_asked_for(tmp_path: Path) -> None:
+    with open_lesson(with_attempts(tmp_path)) as lesson:
+        told = recorded_feedbacks(lesson)
+        (whole,) = stretches(lesson.parts(), FRAME_S, told)
+        (part,) = stretches(lesson.parts(), FRAME_S, told, only=1, around_s=0.5)
+    # It is from frame 4 to 36, and 15 frames on either side are asked for: there are but four before it.
+    assert [each.number for each in part.attempts] == [1]
+    np.testing.assert_array_equal(part.track.joints_m, whole.track.joints_m[: 36 + 15 + 1])
+
+
+def test_an_attempt_whose_motion_is_there_in_part_only_is_refused(tmp_path: Path) -> None:
+    feedbacks = tuple(feedback_of(BEGIN_NS, *frames) for frames in ((2, 40, (4, 10, 20, 36)), (42, 80, (44, 50, 60, 76))))
+    log = list(log_of(WHOLE.track, BEGIN_NS, feedbacks))
+    file = recorded(tmp_path / "lessons", log[: 2 * 60] + log[-2:])
+    assert "of attempt 2 of lesson" in refusal(file, tmp_path / "out", 2)
+    assert "has no attempt 3; it has 1-2" in refusal(file, tmp_path / "out", 3)
+    export(file, tmp_path, None, Order(Format.TRC, tmp_path / "out", 1))
 
 
 def test_each_stretch_between_gaps_becomes_a_file_and_those_with_nobody_none(
@@ -167,15 +222,34 @@ def refusal(file: Path, out: Path, attempt: int | None = None, kind: Format = Fo
 @pytest.mark.slow
 def test_an_attempt_that_is_not_there_is_refused_with_those_that_are(tmp_path: Path) -> None:
     assert "has no attempt 3; it has 1-2" in refusal(with_attempts(tmp_path / "a"), tmp_path / "out", 3)
-    without = recorded(tmp_path / "b", list(log_of(WHOLE.track, BEGIN_NS)))
+    still = known_track(np.repeat(WHOLE.track.joints_m[:1], 90, axis=0), FRAME_S, 0.01)
+    without = recorded(tmp_path / "b", list(log_of(still, BEGIN_NS)))
     assert f"lesson {without} holds no attempts" in refusal(without, tmp_path / "out", 1)
+
+
+def tried_once() -> Track:
+    """Somebody who waits, tries, and waits."""
+    joints = WHOLE.track.joints_m
+    waiting = np.concatenate([np.repeat(joints[:1], 60, axis=0), joints, np.repeat(joints[-1:], 60, axis=0)])
+    return known_track(waiting + np.random.default_rng(0).normal(0, 0.002, waiting.shape), FRAME_S, 0.01)
+
+
+@pytest.mark.slow
+def test_numbers_are_those_of_the_report_also_when_it_evaluated_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """On the day something else was taken for the first attempt."""
+    told = msgspec.structs.replace(feedback_of(BEGIN_NS, 2, 40, (4, 10, 20, 36)), action="squat")
+    file = recorded(tmp_path / "lessons", list(log_of(tried_once(), BEGIN_NS, (told,))))
+    export(file, tmp_path, None, Order(Format.TRC, tmp_path / "day", 1))
+    assert f"attempt 1: squat, {begun(4)}" in capsys.readouterr().out
+    export(file, tmp_path, None, Order(Format.TRC, tmp_path / "now", 1, again=True))
+    assert "attempt 1: badminton_clear, " in capsys.readouterr().out
+    (attempt,) = json.loads((tmp_path / "now/lesson-attempt1.trc.json").read_text())["attempts"]
+    assert attempt["action"] == "badminton_clear"
 
 
 @pytest.mark.slow
 def test_in_a_lesson_in_which_no_attempt_was_told_it_is_looked_for(tmp_path: Path) -> None:
-    joints = WHOLE.track.joints_m
-    waiting = np.concatenate([np.repeat(joints[:1], 60, axis=0), joints, np.repeat(joints[-1:], 60, axis=0)])
-    seen = known_track(waiting + np.random.default_rng(0).normal(0, 0.002, waiting.shape), FRAME_S, 0.01)
+    seen = tried_once()
     file = recorded(tmp_path / "lessons", list(log_of(seen, BEGIN_NS)))
     export(file, tmp_path, None, Order(Format.TRC, tmp_path / "out", 1))
     (attempt,) = json.loads((tmp_path / "out/lesson-attempt1.trc.json").read_text())["attempts"]
@@ -239,10 +313,13 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
     assert "cannot be written" in refusal(with_attempts(tmp_path / "lessons"), tmp_path / "out")
 
 
-@pytest.mark.parametrize("code", ["P" * 41, "P\n07", "P\udcff"])
-def test_a_code_that_fits_into_no_file_is_refused(tmp_path: Path, code: str) -> None:
-    with pytest.raises(UserError, match="--pupil: a code has at most 40 characters"):
-        export(with_attempts(tmp_path), tmp_path, None, Order(Format.GLB, tmp_path, None, code))
+@pytest.mark.parametrize("code", ["P" * 9, "P\n07", "P7\udcff", "Ö7", "Anna", "EMMA2", "7-2"])
+@pytest.mark.parametrize("kind", [Format.C3D, Format.GLB])
+def test_what_is_no_code_stands_in_no_file(tmp_path: Path, code: str, kind: Format) -> None:
+    """Nor is it changed without a word: Ö7 and Ä7 were the same pupil in a C3D."""
+    with pytest.raises(UserError, match=r"(?s)--pupil: '.*is no pupil's code: a code is a number"):
+        export(with_attempts(tmp_path / "lessons"), tmp_path, None, Order(kind, tmp_path / "out", None, code))
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.slow
@@ -255,7 +332,7 @@ def test_as_people_type_it(tmp_path: Path) -> None:
 
     done = kinebox("lesson", "--format", "glb", "--attempt", "1", "--pupil", "P07", "--out", str(tmp_path / "out"))
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout == f"{tmp_path}/out/lesson-attempt1.glb: 39 frames, 0:01, 1 attempt\n"
+    assert done.stdout == f"{tmp_path}/out/lesson-attempt1.glb: 39 frames, 0:01, attempt 1: badminton_clear, {begun(4)}\n"
     assert b'"pupil":"P07"' in (tmp_path / "out/lesson-attempt1.glb").read_bytes()
     missing = kinebox("lesson", "--format", "glb", "--attempt", "9")
     assert missing.returncode == 2

@@ -13,9 +13,10 @@ import pytest
 from models.messages import codec, topics
 from models.messages.control import ViewControl
 from models.messages.health import CameraHealth, FusionHealth, Health
-from models.messages.lesson import Entry, FusionLog, SegmentRequest
+from models.messages.lesson import Entry, EntryKind, FusionLog, SegmentRequest
 from models.messages.motion import JointState, Motion
 from models.messages.observation import Crop, Observation, Person
+from models.messages.pupil import PupilCorrection, PupilCorrections
 from models.process import Bus, Subscription
 from services.bus.memory import MemoryRouter
 from services.fusion.config import PRESETS
@@ -280,23 +281,30 @@ def test_health_that_fusion_heard_is_in_its_log(tmp_path: Path) -> None:
     assert any(health.process == "fusion" for health in heard)
 
 
+TOLD: dict[EntryKind, tuple[str, bytes]] = {
+    "feedback": (topics.feedback(), codec.encode(feedback(time.monotonic_ns()))),
+    "corrections": (topics.pupil_corrections(), codec.encode(PupilCorrections((PupilCorrection(5, "B12"),)))),
+}
+
+
 @pytest.mark.slow
-def test_feedback_that_fusion_heard_is_in_its_log_and_rubbish_on_that_topic_is_not(tmp_path: Path) -> None:
-    told = codec.encode(feedback(time.monotonic_ns()))
+@pytest.mark.parametrize("kind", TOLD)
+def test_what_fusion_heard_of_attempts_is_in_its_log_and_rubbish_on_that_topic_is_not(tmp_path: Path, kind: EntryKind) -> None:
+    topic, told = TOLD[kind]
     with running(tmp_path) as room:
         asked_ns = time.monotonic_ns()
         room.bus.publish(topics.segment_request(), codec.encode(SegmentRequest(asked_ns)))
         logged: list[bytes] = []
 
         def enough() -> bool:
-            room.bus.publish(topics.feedback(), told[:-1])
-            room.bus.publish(topics.feedback(), told)
+            room.bus.publish(topic, told[:-1])
+            room.bus.publish(topic, told)
             delivery = room.logs.receive(DEADLINE_S)
             assert delivery is not None
             part = codec.decode(delivery.payload, FusionLog)
-            logged.extend(entry.payload for entry in part.entries if entry.kind == "feedback")
+            logged.extend(entry.payload for entry in part.entries if entry.kind == kind)
             return bool(logged)
 
-        until(enough, "feedback in fusion's log")
+        until(enough, f"{kind} in fusion's log")
         until(lambda: room.fusion_health()[1].rejected > 0, "a refusal in fusion's health")
     assert set(logged) == {told}

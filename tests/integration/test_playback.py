@@ -14,16 +14,17 @@ from models.messages import codec, topics
 from models.messages.feedback import ActivityRequest
 from models.messages.health import Health
 from models.messages.motion import Motion
+from models.messages.pupil import PupilTurn
 from models.process import Playback, ProcessContext, Resources, Subscription
 from services.bus.memory import MemoryRouter
 from services.fusion.config import PRESETS
 from services.lesson import playback
 from services.lesson.lesson_file import LessonWriter
-from services.lesson.lesson_reader import open_lesson
+from services.lesson.lesson_reader import Lesson, LessonPart, open_lesson
 from services.lesson.playback import LONGEST_PAUSE_NS, Pace, moved
 from services.lesson.replay import difference, replay
 from tests.integration.waiting import DEADLINE_S, until
-from tests.synthetic.gym import Gym
+from tests.synthetic.gym import T0_NS, Gym
 from tests.synthetic.gym_lesson import TITLE, gym_header, write_gym_lesson
 
 S = 1_000_000_000
@@ -62,7 +63,9 @@ class Played:
         self._motions: Subscription = self._bus.subscribe(topics.motion("live"), topics.motion("smooth"), keep=10_000)
         self._healths: Subscription = self._bus.subscribe(topics.ALL_HEALTH, keep=10_000)
         self._wishes: Subscription = self._bus.subscribe(topics.activity_request(), keep=10_000)
+        self._turns: Subscription = self._bus.subscribe(topics.pupil_turn(), keep=10_000)
         self.asked: list[str] = []
+        self.called: list[PupilTurn] = []
         self.live: list[Motion] = []
         self.smooth: list[Motion] = []
         self.healths: list[Health] = []
@@ -73,6 +76,8 @@ class Played:
             (self.live if motion.kind == "live" else self.smooth).append(motion)
         while (delivery := self._wishes.receive(0.0)) is not None:
             self.asked.append(codec.decode(delivery.payload, ActivityRequest).activity)
+        while (delivery := self._turns.receive(0.0)) is not None:
+            self.called.append(codec.decode(delivery.payload, PupilTurn))
         while (delivery := self._healths.receive(0.0)) is not None:
             self.healths.append(codec.decode(delivery.payload, Health))
         return self
@@ -132,6 +137,21 @@ def test_the_figure_of_the_lesson_is_published_with_its_times_moved_and_nothing_
 
 
 @pytest.mark.slow
+def test_a_lesson_is_read_through_once_before_it_is_played(lesson: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[Path] = []
+    parts = Lesson.parts
+
+    def counted(opened: Lesson) -> Iterator[LessonPart]:
+        read.append(opened.path)
+        return parts(opened)
+
+    monkeypatch.setattr(Lesson, "parts", counted)
+    with playing(lesson, loop=False) as (_, thread):
+        thread.join(DEADLINE_S)
+    assert read == [lesson, lesson], "once before, and once as it is played"
+
+
+@pytest.mark.slow
 def test_cameras_and_fusion_say_again_what_they_said_and_others_of_that_day_do_not(lesson: Path) -> None:
     with playing(lesson, loop=True, speed=1.0) as (played, _):
         names = {"replay", "fusion", *(f"edge-{name}" for name in GYM.rig.names)}
@@ -151,6 +171,49 @@ def test_the_evaluation_is_told_what_pupils_were_to_do_once_and_again_when_it_co
         until(lambda: played.collect().asked == ["long_jump", "long_jump"], "the same for who came later")
         thread.join(DEADLINE_S)
     assert played.collect().asked == ["long_jump", "long_jump"], "between two changes whoever watches may choose otherwise"
+
+
+@pytest.fixture(scope="module")
+def lesson_of_pupils(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """7 was up before it began, 8 from 1.2 s on."""
+    turns = (PupilTurn("7", T0_NS - 50 * S), PupilTurn("8", T0_NS + 12 * S // 10))
+    return write_gym_lesson(tmp_path_factory.mktemp("lesson"), GYM, turns=turns)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("speed", [1.0, 2.0])
+def test_the_evaluation_is_told_who_was_up_as_of_the_instant_that_is_shown(lesson_of_pupils: Path, speed: float) -> None:
+    began_ns = time.monotonic_ns()
+    with playing(lesson_of_pupils, loop=False, speed=speed) as (played, thread):
+        thread.join(DEADLINE_S)
+        played.collect()
+    nobody, first, second = dict.fromkeys(played.called)
+    assert [turn.pupil for turn in (nobody, first, second)] == ["", "7", "8"]
+    assert began_ns <= nobody.t_ns < first.t_ns < second.t_ns
+    shown = min(played.smooth, key=lambda motion: abs(motion.t_ns - second.t_ns))
+    assert (shown.sequence - played.smooth[0].sequence) / 30 == pytest.approx(1.2, abs=0.15)
+    assert first.t_ns == nobody.t_ns + 1, "he was up long before, and of two turns the later one counts"
+
+
+@pytest.mark.slow
+def test_an_evaluation_that_comes_later_is_told_who_was_up_with_the_same_moment(lesson_of_pupils: Path) -> None:
+    with playing(lesson_of_pupils, loop=False, speed=1.0) as (played, thread):
+        until(lambda: [turn.pupil for turn in played.collect().called][-1:] == ["8"], "who was up")
+        said = played.called[-1]
+        played.evaluation_comes()
+        until(lambda: played.collect().called.count(said) == 2, "the same for who came later")
+        thread.join(DEADLINE_S)
+
+
+@pytest.mark.slow
+def test_at_the_beginning_of_the_next_round_nobody_is_up_who_was_at_the_end(lesson_of_pupils: Path) -> None:
+    with playing(lesson_of_pupils, loop=True) as (played, _):
+        until(
+            lambda: [turn.pupil for turn in dict.fromkeys(played.collect().called)][:6] == ["", "7", "8"] * 2,
+            "the turns of two rounds",
+        )
+    times = [turn.t_ns for turn in dict.fromkeys(played.called)]
+    assert times == sorted(times), "of two turns the later one counts"
 
 
 @pytest.mark.slow

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -18,13 +19,19 @@ import models.teaching
 from models.errors import UserError
 from models.messages import codec
 from models.messages.feedback import Feedback
+from models.messages.health import EvaluationHealth, Health
 from models.messages.lesson import Entry, FusionLog
 from models.messages.motion import JointState, Motion
+from models.messages.pupil import PupilCorrection, PupilCorrections, PupilTurn
 from services.cli import report as command
 from services.cli.report import Order, write_report
+from services.evaluation import pipeline
+from services.evaluation.appraisal import appraise
+from services.evaluation.attempt import FoundAttempt
 from services.evaluation.report.document import Report
 from services.evaluation.track import Track, known_track
 from services.lesson.lesson_file import LessonWriter
+from tests.browser.attempts import ending
 from tests.installed import ROOT
 from tests.reported import BEGUN_NS, attempt
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header
@@ -62,8 +69,12 @@ def motion_of(track: Track, frame: int) -> Motion:
     )
 
 
-def log_of(track: Track | None, *feedbacks: Feedback) -> Iterator[Entry]:
+def log_of(track: Track | None, *feedbacks: Feedback, up: PupilTurn | None = None) -> Iterator[Entry]:
     yield Entry("tick", BEGIN_NS, b"")
+    if up is not None:
+        evaluation = EvaluationHealth("", "site", "waiting", 0, 0.1, 0.0, 0, 0, up.pupil, up.t_ns)
+        health = Health("evaluation", 1, BEGIN_NS, "ok", (), 0.1, 1.0, evaluation=evaluation)
+        yield Entry("health", BEGIN_NS, codec.encode(health))
     for frame in range(0 if track is None else len(track)):
         motion = motion_of(track, frame)  # type: ignore[arg-type]
         yield Entry("motion", motion.t_ns, codec.encode(motion))
@@ -131,6 +142,29 @@ def test_a_lesson_without_feedback_is_evaluated_from_its_motion(tmp_path: Path) 
 
 
 @pytest.mark.slow
+def test_an_attempt_with_which_the_recording_ends_is_in_the_report(tmp_path: Path) -> None:
+    track = moving("squat")
+    ended = STILL_FRAMES + round(performance("squat")[1].moments_s[-1] / FRAME_S)
+    report = reported(recorded(tmp_path, log_of(track.part(0, ended + 9))), Order(), tmp_path / "r.json")
+    assert [one.action for one in report.attempts] == ["squat"]
+
+
+@pytest.mark.slow
+def test_an_attempt_with_which_something_is_wrong_is_left_out_and_that_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def wrong(_track: Track, attempt: FoundAttempt, *others: Any) -> Feedback:
+        if attempt.action == "squat":
+            raise ValueError("a mistake of ours")
+        return appraise(_track, attempt, *others)
+
+    monkeypatch.setattr(pipeline, "appraise", wrong)
+    report = reported(recorded(tmp_path, log_of(moving("squat", "basketball_shot"))), Order(), tmp_path / "r.json")
+    assert [one.action for one in report.attempts] == ["basketball_shot"]
+    assert "note: an attempt could not be judged and is left out (ValueError: a mistake of ours)" in capsys.readouterr().err
+
+
+@pytest.mark.slow
 def test_a_lesson_is_evaluated_again_when_that_is_asked_for(tmp_path: Path) -> None:
     file = recorded(tmp_path, log_of(moving("squat"), *said()))
     report = reported(file, Order(again=True), tmp_path / "r.json")
@@ -186,12 +220,66 @@ def test_csv_and_page_are_of_the_same_attempts(tmp_path: Path) -> None:
         (Order(form="pdf"), "there is no format 'pdf'; choose one of json, csv, html"),
         (Order(language="fr"), "there is no language 'fr'; choose one of en, zh, de, es"),
         (Order(pupil="P07"), "lesson lesson has no attempt of pupil 'P07'; its pupils are '-'"),
+        (
+            Order(pupil="Anna"),
+            "--pupil: 'Anna' is no pupil's code: a code is a number, also with a letter: 7, 7B, B12, AB-12 or 7B-12, at most "
+            "8 characters; no names are kept; - stands for nobody",
+        ),
     ],
 )
 def test_what_is_not_known_is_refused_and_nothing_is_written(tmp_path: Path, order: Order, line: str) -> None:
     file = recorded(tmp_path / "lessons", log_of(None, *said()))
     assert refusal(file, tmp_path / "out", order) == line
     assert [path.name for path in tmp_path.iterdir()] == ["lessons"]
+
+
+def of_pupils(*codes: str) -> tuple[Feedback, ...]:
+    return tuple(msgspec.structs.replace(one, pupil=code) for one, code in zip(said(), codes, strict=True))
+
+
+def test_a_report_is_grouped_by_pupil_as_was_said_on_the_day_and_corrected_since(tmp_path: Path) -> None:
+    told = of_pupils("7", "7")
+    correction = PupilCorrections((PupilCorrection(told[1].id, "B12"),))
+    log = [*log_of(None, *told), Entry("corrections", told[1].t_published_ns + 1, codec.encode(correction))]
+    file = recorded(tmp_path / "lessons", log)
+    before = file.read_bytes()
+    report = reported(file, Order(), tmp_path / "r.json")
+    assert [(one.pupil, one.attempts) for one in report.pupils] == [("7", 1), ("B12", 1)]
+    write_report(file, tmp_path, None, Order("csv"), tmp_path / "r.csv")
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "r.csv").read_bytes().decode("utf-8-sig"), newline="")))
+    assert [(row["attempt"], row["pupil"]) for row in rows] == [("1", "7"), ("2", "B12")]
+    write_report(file, tmp_path, None, Order("html", pupil="b12"), tmp_path / "r.html")
+    page = (tmp_path / "r.html").read_text()
+    assert "Pupil B12" in page
+    assert "Pupil 7" not in page
+    assert file.read_bytes() == before
+
+
+@pytest.mark.slow
+def test_a_lesson_that_is_evaluated_again_gives_its_attempts_to_whom_they_were(tmp_path: Path) -> None:
+    track = moving("squat", "basketball_shot")
+    log = list(log_of(track, up=PupilTurn("7", BEGIN_NS - SECOND_NS)))
+    first = reported(recorded(tmp_path / "a", log), Order(again=True), tmp_path / "1.json")
+    assert [(one.action, one.pupil) for one in first.attempts] == [("squat", "7"), ("basketball_shot", "7")]
+    end_ns = BEGIN_NS + round(first.attempts[0].keyframes_s.end * SECOND_NS)
+    told = ending(attempt("squat", exemplar=0, pupil="7"), end_ns)
+    log += [Entry("feedback", end_ns, codec.encode(told))]
+    log += [Entry("corrections", end_ns, codec.encode(PupilCorrections((PupilCorrection(told.id, "8"),))))]
+    again = reported(recorded(tmp_path / "b", log), Order(again=True), tmp_path / "2.json")
+    assert [(one.action, one.pupil) for one in again.attempts] == [("squat", "8"), ("basketball_shot", "7")]
+
+
+@pytest.mark.parametrize(("asked", "found"), [("07", "07"), ("7", "7"), ("7-2", "7-2"), ("emma2", "EMMA2")])
+def test_a_lesson_with_codes_that_are_none_today_is_reported_by_them(tmp_path: Path, asked: str, found: str) -> None:
+    held = ("07", "7") if asked in {"07", "7"} else ("7-2", "EMMA2")
+    file = recorded(tmp_path / "lessons", log_of(None, *of_pupils(*held)))
+    assert [one.pupil for one in reported(file, Order(), tmp_path / "all.json").pupils] == sorted(held)
+    assert [one.pupil for one in reported(file, Order(pupil=asked), tmp_path / "one.json").attempts] == [found]
+
+
+def test_of_a_lesson_of_today_pupil_07_is_pupil_7(tmp_path: Path) -> None:
+    file = recorded(tmp_path / "lessons", log_of(None, *of_pupils("7", "B12")))
+    assert [one.pupil for one in reported(file, Order(pupil="07"), tmp_path / "one.json").attempts] == ["7"]
 
 
 def test_those_who_were_not_named_can_be_asked_for(tmp_path: Path) -> None:

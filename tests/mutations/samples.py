@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 
 from models.messages import codec, topics
+from models.messages.attempts import AttemptsBegin, FeedbackRequest, RememberedFeedback
 from models.messages.control import CropPrediction, ViewControl
 from models.messages.feedback import ActivityRequest, Feedback, Judgement, MeasureResult
 from models.messages.health import (
@@ -21,6 +22,7 @@ from models.messages.health import (
 from models.messages.lesson import Entry, FusionLog, LessonRequest, SegmentRequest
 from models.messages.motion import CameraUse, JointState, Motion
 from models.messages.observation import Crop, Observation, Person
+from models.messages.pupil import NOBODY, PupilCorrection, PupilCorrections, PupilTurn
 from models.messages.trouble import Trouble
 from models.skeleton import coco
 from tests.synthetic.gym import ring_rig
@@ -71,7 +73,8 @@ def healths(t_ns: int) -> dict[str, Health]:
     """A word of every process, by its name."""
     camera = CameraHealth(RIG.names[0], 30.0, 10.0, 10.0, 0, 5.0, "thunder", {"pose": 24.0, "decode": 4.0})
     machine = MachineHealth(1.2, 2.0, 4000.0, 9000.0, 55.0, 10**18, 0.0)
-    evaluation = EvaluationHealth("long_jump", "tablet", "moving", 3, 0.2, 30.0, 0, 0)
+    evaluation = EvaluationHealth("long_jump", "tablet", "moving", 3, 0.2, 30.0, 0, 0, "B12", t_ns, 1, 3, t_ns // 10**6)
+    recorder = RecorderHealth("2026", "a", 3.0, 1_000_000, 0, t_ns - 10**9, 2, (t_ns // 10**6 - 9000, t_ns // 10**6 - 500))
     mending = Trouble("restarting", "tablet hung and is started again")
     restarts = (Restarts("tablet", 1, t_ns, "hung", ""),)
     return {
@@ -89,7 +92,7 @@ def healths(t_ns: int) -> dict[str, Health]:
             supervisor=SupervisorHealth("0.1", t_ns, restarts),
         ),
         "evaluation": Health("evaluation", 5, t_ns, "ok", (), 0.1, 160.0, evaluation=evaluation),
-        "recorder": Health("recorder", 4, t_ns, "ok", (), 0.01, 60.0, recorder=RecorderHealth("2026", "a", 3.0, 1_000_000, 0)),
+        "recorder": Health("recorder", 4, t_ns, "ok", (), 0.01, 60.0, recorder=recorder),
     }
 
 
@@ -151,4 +154,12 @@ def by_topic() -> dict[str, list[bytes]]:
     found[topics.lesson_request()] = [codec.encode(LessonRequest("start", "a lesson")), codec.encode(LessonRequest("stop"))]
     found[topics.feedback()] = [codec.encode(feedback(t_ns))]
     found[topics.activity_request()] = [codec.encode(ActivityRequest("long_jump")), codec.encode(ActivityRequest(""))]
+    found[topics.pupil_turn()] = [codec.encode(PupilTurn("B12", t_ns)), codec.encode(PupilTurn(NOBODY, t_ns))]
+    found[topics.pupil_corrections()] = [codec.encode(PupilCorrections((PupilCorrection(feedback(t_ns).id, "7"),)))]
+    found[topics.attempts_begin()] = [codec.encode(AttemptsBegin(t_ns, 3, feedback(t_ns).id))]
+    found[topics.feedback_request()] = [codec.encode(FeedbackRequest(feedback(t_ns).id))]
+    found[topics.remembered_feedback()] = [
+        codec.encode(RememberedFeedback(feedback(t_ns), 2)),
+        codec.encode(RememberedFeedback(None, 0)),
+    ]
     return found

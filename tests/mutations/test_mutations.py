@@ -27,6 +27,7 @@ from models.messages import codec, topics
 from models.messages.feedback import ActivityRequest, Feedback
 from models.messages.lesson import LessonRequest
 from models.messages.motion import JointState, Motion
+from models.messages.pupil import PupilTurn
 from models.process import Delivery, Resources
 from services.bus.mailbox import Mailbox
 from services.evaluation.process import EvaluationLoop
@@ -124,7 +125,12 @@ def test_the_pages_server_survives_and_then_shows_what_is_true(topic: str, count
 
 @pytest.mark.parametrize("count", COUNTS)
 def test_the_tablets_socket_survives_and_then_gets_its_figures(count: int) -> None:
-    texts = (b'..{"type":"ack","motions":1,"statuses":1}', b'..{"type":"ping","id":7}')
+    texts = (
+        b'..{"type":"ack","motions":1,"statuses":1}',
+        b'..{"type":"ping","id":7}',
+        b'..{"type":"turn","pupil":"7"}',
+        b'..{"type":"correction","attempt":1,"pupil":"7"}',
+    )
     chance, growth = random.Random(3), Growth()  # noqa: S311 - no secret
     with Room() as room:
         url = f"ws://127.0.0.1:{room.port}/ws"
@@ -227,6 +233,7 @@ def test_the_evaluation_survives_and_then_finds_the_attempt_that_was_asked_for(t
 
     def performed() -> Iterator[Delivery]:
         yield Delivery(topics.activity_request(), codec.encode(ActivityRequest("squat")))
+        yield Delivery(topics.pupil_turn(), codec.encode(PupilTurn("7", time.monotonic_ns())))
         begun_ns = time.monotonic_ns()
         for number, joints_m in enumerate(frames):
             time.sleep(1 / 60)  # health comes once a second
@@ -237,6 +244,6 @@ def test_the_evaluation_survives_and_then_finds_the_attempt_that_was_asked_for(t
     bus = FeedBus(chain(deliveries(topic, count, growth), performed()), stop)
     EvaluationLoop(context_of("evaluation", bus, stop, tmp_path), some("squat", "long_jump")).run()
     told = codec.decode(bus.newest[topics.feedback()], Feedback)
-    assert (told.action, told.by) == ("squat", "chosen")
+    assert (told.action, told.by, told.pupil) == ("squat", "chosen", "7")
     assert sum(health.evaluation.rejected for health in bus.healths if health.evaluation is not None) > 0
     assert growth.mb < GROWTH_MB

@@ -57,6 +57,35 @@ def test_feet_stand_bodies_fly_and_joints_turn_as_they_can_for_everybody(action:
     assert_lawful(perform(data.draw(performances(action, most_faults=2)), subject), subject)
 
 
+ONCE_BROKEN = {
+    "a late hit behind the head was lowered and raised again within hundredths of a second": (
+        Somebody(15.356439813506825, "male", 0),
+        Performance(
+            "volleyball_spike",
+            tempo=0.7,
+            amplitude=0.9569712109237094,
+            skill=0.0,
+            faults={"hit_behind": 2.0, "late_hit": 2.0},
+            seed=0,
+        ),
+    ),
+    "both shoulders turned further than a grown-up's": (
+        Somebody(43.0, "female", 855),
+        Performance(
+            "volleyball_spike", tempo=0.82, amplitude=0.957, skill=0.0, faults={"hit_behind": 1.9466, "late_hit": 1.9466}, seed=855
+        ),
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", ONCE_BROKEN)
+def test_who_once_broke_a_law_keeps_it(case: str) -> None:
+    who, performance = ONCE_BROKEN[case]
+    subject = who.subject()
+    assert_lawful(perform(performance, subject), subject, every=8)
+
+
 @pytest.mark.parametrize("action", ONE_FAST)
 def test_who_is_left_handed_does_the_mirrored_motion(action: str) -> None:
     fault = next(iter(MEASURES[action]))

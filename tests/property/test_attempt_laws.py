@@ -1,7 +1,9 @@
 """What does not matter to attempts and to equation 19: where in the room, how tall, which side, how fast."""
 
+from functools import cache
+
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
@@ -11,7 +13,8 @@ from models.teaching.standard import FRAME_S
 from services.evaluation.alignment import align, warp
 from services.evaluation.attempts import AttemptFinder
 from services.evaluation.energy import keyframes_of_energy, motion_energy
-from services.evaluation.keyframes import keyframes_of
+from services.evaluation.features import features_of, mirrored_features
+from services.evaluation.keyframes import in_order, keyframes_of, room_for
 from services.evaluation.normalise import lead_right, mirrored
 from services.evaluation.track import known_track
 from tests.bench.teaching.finding import shipped
@@ -19,7 +22,6 @@ from tests.bench.teaching.finding import shipped
 ANGLES = st.floats(-np.pi, np.pi)
 PLACES = st.tuples(st.floats(-20, 20), st.floats(-20, 20))
 SIZES = st.floats(0.6, 1.5)
-FINDER = AttemptFinder(shipped())
 ALL = list(ACTIONS)
 
 
@@ -35,21 +37,37 @@ def performed(action: str) -> Float:
     return np.concatenate((np.repeat(joints[:1], 15, axis=0), joints, np.repeat(joints[-1:], 15, axis=0)))
 
 
+@cache
+def finder() -> AttemptFinder:
+    return AttemptFinder(shipped())
+
+
 def found(joints_m: Float) -> list[tuple[str, str, tuple[float, ...]]]:
-    FINDER.reset()
-    attempts = (FINDER.push(joints, number * FRAME_S) for number, joints in enumerate(joints_m))
+    finder().reset()
+    attempts = (finder().push(joints, number * FRAME_S) for number, joints in enumerate(joints_m))
     return [(one.action, one.handed, one.moments_s) for one in attempts if one is not None]
 
 
-PLAIN = {action: found(performed(action)) for action in ALL}
+@cache
+def plain(action: str) -> list[tuple[str, str, tuple[float, ...]]]:
+    """What is found of it where it was performed."""
+    return found(performed(action))
 
 
 @settings(max_examples=20, deadline=None)
 @given(st.sampled_from(ALL), ANGLES, PLACES, SIZES)
 def test_neither_room_nor_size_changes_what_is_found(action: str, angle: float, place: tuple[float, float], size: float) -> None:
     ((name, handed, moments),) = found(moved(performed(action), angle, place, size))
-    assert (name, handed) == PLAIN[action][0][:2] == (action, "right")
-    np.testing.assert_allclose(moments, PLAIN[action][0][2], atol=1e-4)
+    assert (name, handed) == plain(action)[0][:2] == (action, "right")
+    np.testing.assert_allclose(moments, plain(action)[0][2], atol=1e-4)
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.sampled_from(ALL), st.tuples(st.integers(0, 59), st.integers(0, 16)))
+def test_features_of_the_mirrored_motion_are_the_mirrored_features(action: str, unknown: tuple[int, int]) -> None:
+    joints = performed(action)[15:75].copy()
+    joints[unknown] = np.nan
+    np.testing.assert_array_equal(mirrored_features(features_of(joints, FRAME_S)), features_of(mirrored(joints), FRAME_S))
 
 
 @settings(max_examples=10, deadline=None)
@@ -57,7 +75,7 @@ def test_neither_room_nor_size_changes_what_is_found(action: str, angle: float, 
 def test_in_the_mirror_the_other_side_leads_and_nothing_else_changes(action: str, angle: float) -> None:
     ((name, handed, moments),) = found(moved(mirrored(performed(action)), angle, (1.0, 2.0), 1.0))
     assert (name, handed) == (action, "left")
-    np.testing.assert_allclose(moments, PLAIN[action][0][2], atol=0.02)
+    np.testing.assert_allclose(moments, plain(action)[0][2], atol=0.02)
 
 
 @settings(max_examples=20, deadline=None)
@@ -134,3 +152,13 @@ def test_energy_grows_with_the_square_of_size_and_knows_no_place(size: float, an
         motion_energy(moved(joints, angle, place, size)), size**2 * motion_energy(joints), rtol=1e-6, atol=1e-12
     )
     assert keyframes_of_energy(moved(joints, angle, place, size)).tolist() == keyframes_of_energy(joints).tolist()
+
+
+@given(st.lists(st.floats(-50, 150), min_size=4, max_size=4), st.integers(5, 100))
+def test_keyframes_follow_one_another_within_the_frames_and_those_that_do_stay(frames: list[float], count: int) -> None:
+    assume(count >= room_for(FRAME_S))
+    ordered = in_order(np.array(frames), count, FRAME_S)
+    assert ordered[0] >= 0
+    assert ordered[-1] <= count - 1
+    assert (np.diff(ordered) >= 1).all()
+    np.testing.assert_allclose(in_order(ordered, count, FRAME_S), ordered)

@@ -1,7 +1,8 @@
 """Laws of the evaluation's step: whatever fusion and tablets send, it goes on, and never says more than was seen."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Final
 
 import msgspec
@@ -14,6 +15,7 @@ from models.arrays import Float
 from models.messages import codec
 from models.messages.feedback import ActivityRequest, Colour, Feedback
 from models.messages.motion import JointState, Motion
+from models.messages.pupil import PupilTurn
 from models.motions.motion import Handed
 from models.skeleton import coco
 from services.evaluation.pipeline import initial_state, step
@@ -22,9 +24,10 @@ from tests.taught import performance, placed, some
 ACTIONS: Final = ("basketball_shot", "squat", "soccer_kick")
 CONFIG: Final = some(*ACTIONS)
 FRAME_NS: Final = 33_333_333
+MS: Final = 1_000_000
 _STILL: Final = 15
 
-Event = Motion | ActivityRequest
+Event = Motion | ActivityRequest | PupilTurn
 
 
 @dataclass
@@ -98,6 +101,9 @@ class Script:
     def choose(self, activity: str) -> None:
         self.events.append(ActivityRequest(activity))
 
+    def call(self, pupil: str, after_ns: int) -> None:
+        self.events.append(PupilTurn(pupil, max(self.t_ns + after_ns, 0)))
+
     def perform(self, action: str, handed: Handed, number: int = 0, state: JointState = JointState.SEEN) -> None:
         track, _ = performance(action, handed, number)
         self.stands = track.joints_m[0]
@@ -118,6 +124,7 @@ def payloads(events: list[Event]) -> list[bytes]:
     said = []
     for event in events:
         state, output = step(state, event, CONFIG)
+        assert output.failure is None
         if output.feedback is not None:
             said.append(codec.encode(output.feedback))
     return said
@@ -139,6 +146,7 @@ def _chunks() -> st.SearchStrategy[tuple[object, ...]]:
         st.tuples(st.just("count_anew")),
         st.tuples(st.just("late"), st.sampled_from((-(10**12), -(10**9), -1, 1, 10**7, 10**9, 2**62))),
         st.tuples(st.just("choose"), st.sampled_from(("", *ACTIONS, "pole_vault"))),
+        st.tuples(st.just("call"), st.sampled_from(("", "7", "B12")), st.sampled_from((-(10**10), -(10**8), 0, 1, 10**9, 2**62))),
     )
 
 
@@ -155,22 +163,35 @@ def script_of(chunks: list[tuple[object, ...]]) -> list[Event]:
 @given(st.lists(_chunks(), max_size=10))
 def test_whatever_comes_the_evaluation_goes_on_and_what_it_says_can_be_sent(chunks: list[tuple[object, ...]]) -> None:
     events = script_of(chunks)
-    said = told(events)
-    for feedback in said:
-        # A joint that was not seen is never coloured; the message itself refuses that, too.
-        assert (feedback.colours[feedback.states != JointState.SEEN] == Colour.GREY).all()
+    for feedback in told(events):
         epochs = {event.epoch for event in events if isinstance(event, Motion)}
         assert feedback.epoch in epochs
-    ends = [feedback.keyframes_ns[-1] for feedback in said]
-    assert len({feedback.id for feedback in said}) == len(ends) or len(set(ends)) < len(ends)
+        assert feedback.pupil in {"", *(event.pupil for event in events if isinstance(event, PupilTurn))}
+
+
+_BREAKS: Final = ("late", "count_epochs", "count_anew")
+"""After these the clock, or the count, begins anew."""
+_TRIED: Final[list[tuple[object, ...]]] = [("nobody", 40), ("choose", ""), ("perform", "squat", "right", 0, JointState.SEEN)]
+"""Whoever was there before has gone, and somebody squats for all to see."""
+
+
+@pytest.mark.slow
+@settings(max_examples=20, deadline=None)
+@given(st.lists(_chunks(), max_size=8))
+def test_no_movement_is_told_twice_and_one_that_is_seen_is_told(chunks: list[tuple[object, ...]]) -> None:
+    said = told(script_of([*(chunk for chunk in chunks if chunk[0] not in _BREAKS), *_TRIED]))
+    assert len({feedback.id for feedback in said}) == len(said)
+    spans = sorted((feedback.keyframes_ns[0], feedback.keyframes_ns[-1]) for feedback in said)
+    assert all(end_ns <= start_ns for (_, end_ns), (start_ns, _) in pairwise(spans))
+    assert (said[-1].action, said[-1].handed) == ("squat", "right")
 
 
 @pytest.mark.slow
 @settings(max_examples=5, deadline=None)
 @given(st.lists(_chunks(), min_size=1, max_size=8))
 def test_the_same_events_give_the_same_feedback_to_the_last_bit(chunks: list[tuple[object, ...]]) -> None:
-    events = script_of(chunks)
-    assert payloads(events) == payloads(events)
+    events = script_of([*chunks, *_TRIED])
+    assert payloads(events) == payloads(events) != []
 
 
 def attempts(action: str, handed: Handed = "right", number: int = 0) -> list[Event]:
@@ -264,3 +285,72 @@ def test_what_the_pupil_does_is_known_only_while_he_is_seen() -> None:
     script.show(script.stands, JointState.UNKNOWN)
     state, _ = step(state, script.events[0], CONFIG)
     assert state.doing == "unknown"
+
+
+def start_and_end_ns(events: list[Event]) -> tuple[int, int]:
+    (feedback,) = told(events)
+    return feedback.keyframes_ns[0], feedback.keyframes_ns[-1]
+
+
+def taken_in_after(events: list[Event], turn: PupilTurn) -> list[Event]:
+    """The same events, and a turn as soon as the motion is there that shows its time."""
+    later = [number for number, event in enumerate(events) if isinstance(event, Motion) and event.t_ns > turn.t_ns]
+    place = later[0] if later else len(events)
+    return [*events[:place], turn, *events[place:]]
+
+
+def test_an_attempt_is_of_the_pupil_who_was_up_when_it_began() -> None:
+    events = attempts("squat")
+    start_ns, end_ns = start_and_end_ns(events)
+    before, after = PupilTurn("7", start_ns - 10**8), PupilTurn("8", start_ns + MS)
+    assert [one.pupil for one in told(events)] == [""]
+    assert [one.pupil for one in told(taken_in_after(events, before))] == ["7"]
+    assert [one.pupil for one in told(taken_in_after(taken_in_after(events, before), after))] == ["7"]
+    assert [one.pupil for one in told(taken_in_after(taken_in_after(events, before), PupilTurn("8", end_ns)))] == ["7"]
+    assert [one.pupil for one in told(taken_in_after(events, after))] == [""], "never of one who was called later"
+    gone = taken_in_after(taken_in_after(events, before), PupilTurn("", start_ns - MS))
+    assert [one.pupil for one in told(gone)] == [""]
+
+
+def test_a_turn_that_is_heard_of_late_counts_from_when_it_was() -> None:
+    events = attempts("squat")
+    start_ns, _ = start_and_end_ns(events)
+    half = len(events) // 2
+    assert [one.pupil for one in told([*events[:half], PupilTurn("7", start_ns - MS), *events[half:]])] == ["7"]
+
+
+def test_of_two_turns_the_later_one_counts_in_whatever_order_they_come_and_however_often() -> None:
+    events = attempts("squat")
+    start_ns, _ = start_and_end_ns(events)
+    older, newer = PupilTurn("7", start_ns - 3 * MS), PupilTurn("8", start_ns - 2 * MS)
+    for turns in ([older, newer], [newer, older], [older, newer, older, newer, older]):
+        state = initial_state(CONFIG)
+        for turn in turns:
+            state, _ = step(state, turn, CONFIG)
+        assert state.turn == newer
+        assert [one.pupil for one in told([*turns, *events])] == ["8"]
+
+
+def test_whose_it_was_before_the_turns_that_are_remembered_is_not_known() -> None:
+    events = attempts("squat")
+    start_ns, _ = start_and_end_ns(events)
+    many: list[Event] = [PupilTurn("8", start_ns + MS + number) for number in range(100)]
+    assert [one.pupil for one in told([PupilTurn("7", start_ns - MS), *many, *events])] == [""]
+
+
+def test_an_attempt_of_a_lesson_that_is_played_faster_is_of_whoever_was_up_when_it_was_shown_to_begin() -> None:
+    config = replace(CONFIG, speed=4.0, slack_frames=15.0)
+    first_ns = next(event.t_ns for event in attempts("squat") if isinstance(event, Motion))
+    faster: list[Event] = [
+        msgspec.structs.replace(event, t_ns=first_ns + (event.t_ns - first_ns) // 4)
+        for event in attempts("squat")
+        if isinstance(event, Motion)
+    ]
+    start_ns, _ = start_and_end_ns(attempts("squat"))
+    shown_ns = first_ns + (start_ns - first_ns) // 4
+    for pupil, called_ns in (("7", shown_ns - 3 * 10**7), ("", shown_ns + 3 * 10**7)):
+        state, found = initial_state(config), []
+        for event in taken_in_after(faster, PupilTurn("7", called_ns)):
+            state, output = step(state, event, config)
+            found += [output.feedback.pupil] if output.feedback is not None else []
+        assert found == [pupil]

@@ -1,6 +1,7 @@
 """Laws of exported motions: what is read back is what was written; what is cut off is refused, what is changed is harmless."""
 
 import struct
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -110,6 +111,51 @@ def test_a_skeletons_joints_are_off_by_no_more_than_its_bones_vary(track: Track)
         )
         bound = base + sum(varies(joints[a], joints[b]) for a, b in CHAINS.get(name, []))
         assert (off_m[:, coco.INDEX[name]] <= bound + 2e-5).all(), name
+
+
+SPINE = ("Hips", "Shoulders")
+PLACES: dict[str, tuple[str, ...]] = {
+    "Hips": SPINE[:1],
+    "Spine": SPINE[:1],
+    "Spine1": SPINE,
+    "Neck": SPINE,
+    "Head": (*SPINE, "Ears"),
+}
+"""The points over which each bone's joint follows from the root."""
+for label in ("Left", "Right"):
+    for bones, carrier, parts in (
+        (("UpLeg", "Leg", "Foot"), SPINE[:1], ("hip", "knee", "ankle")),
+        (("Arm", "ForeArm", "Hand"), SPINE, ("shoulder", "elbow", "wrist")),
+    ):
+        for count, bone in enumerate(bones, start=1):
+            PLACES[label + bone] = (*carrier, *(f"{label.lower()}_{part}" for part in parts[:count]))
+
+
+@settings(max_examples=60, deadline=None)
+@given(tracks)
+def test_a_shape_that_is_shown_is_where_the_points_are_whatever_is_unknown(track: Track) -> None:
+    take = take_of(track)
+    try:
+        tree = armature(take)
+    except TakeError:
+        return
+    point = {name: take.joints_m[:, index] for index, name in enumerate(coco.NAMES)}
+    for middle, part in (("Hips", "hip"), ("Shoulders", "shoulder"), ("Ears", "ear")):
+        point[middle] = (point[f"left_{part}"] + point[f"right_{part}"]) / 2
+    at: list[Float] = []
+    axes: list[Float] = []
+    for index, bone in enumerate(tree.bones):
+        turn = tree.turns[:, index]
+        at.append(tree.root_m if bone.parent < 0 else at[bone.parent] + axes[bone.parent] @ bone.offset_m)
+        axes.append(turn if bone.parent < 0 else axes[bone.parent] @ turn)
+        chain, shown = [point[name] for name in PLACES.get(bone.name, ())], ~tree.lost[:, index]
+        if not chain or not shown.any():
+            continue
+        bound = np.full(len(track), 1e-9)
+        for start, end in pairwise(chain):
+            lengths = np.linalg.norm(end - start, axis=1)
+            bound += np.abs(lengths - np.nanmedian(lengths))
+        assert (np.linalg.norm(at[-1] - chain[-1], axis=1)[shown] <= bound[shown]).all(), bone.name
 
 
 @settings(max_examples=25, deadline=None)

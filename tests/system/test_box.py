@@ -102,6 +102,10 @@ class Tablet:
             if isinstance(message, bytes):
                 return motion_frame.unpack(message)
 
+    def call(self, pupil: str) -> None:
+        """Say who is up, by his code."""
+        self._socket.send(json.dumps({"type": "turn", "pupil": pupil}))
+
     def pose(self) -> MotionFrame:
         """The next motion in which every limb was seen; a lesson goes on for long enough to have one."""
         limbs = sorted({joint for limb in coco.LIMBS.values() for joint in limb})
@@ -131,7 +135,7 @@ def heights_mm(frame: MotionFrame, name: str) -> Float:
 
 def test_footage_becomes_a_figure_of_human_proportions_that_moves(tmp_path: Path) -> None:
     with running(tmp_path) as box, tablet(box) as client:
-        frames = [client.pose() for _ in range(40)]
+        frames = [client.pose() for _ in range(20)]
     lengths = np.median([limb_lengths_m(frame) for frame in frames], axis=0)
     assert (lengths > 0.15).all()
     assert (lengths < 0.65).all()

@@ -6,14 +6,16 @@ import numpy as np
 import pytest
 
 from models.errors import UserError
+from models.motions.actions import volleyball_spike
 from models.motions.actions.library import ACTIONS
 from models.motions.flights import bouncing, shuttlecock
 from models.motions.motion import RATE_HZ, Attempt, Handed, Motion
 from models.motions.perform import perform
 from models.motions.performance import Performance
+from models.motions.ranges import beyond_deg
 from models.motions.things import BASKETBALL_RADIUS_M
 from models.skeleton import smpl
-from tests.pupils import pupil
+from tests.pupils import pupil, some_pupil
 
 HANDS = ("left_wrist", "left_hand", "right_wrist", "right_hand")
 
@@ -113,3 +115,15 @@ def test_a_shuttlecock_leaves_as_it_was_hit_is_slowed_and_falls_cork_first() -> 
     assert speed[0] == pytest.approx(np.hypot(18, 12), rel=0.02)
     assert speed[-1] < 0.5 * speed[0]
     assert turned.shape == place.shape
+
+
+@pytest.mark.slow
+def test_a_spike_whose_shoulders_would_turn_too_far_is_refused_and_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    subject = some_pupil(43.0, "female", 855)
+    faults = {"hit_behind": 1.9466, "late_hit": 1.9466}
+    performance = Performance("volleyball_spike", tempo=0.82, amplitude=0.957, skill=0.0, faults=faults, seed=855)
+    motion = perform(performance, subject)
+    assert beyond_deg(motion, subject, "shoulder", 1, sides=("left",)) < volleyball_spike.BEYOND_DEG
+    monkeypatch.setattr(volleyball_spike, "_ROUNDS", 1)
+    with pytest.raises(UserError, match=r"somebody of 43 would turn .* degrees too far; ask for less of hit_behind"):
+        perform(performance, subject)

@@ -1,27 +1,42 @@
 """Equation 19 against another implementation, and where templates are found in a stream."""
 
+import json
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
-from tslearn.metrics import dtw_path
 
 from models.arrays import Float
 from services.evaluation.alignment import Spring, warp
+
+ROOT = Path(__file__).parents[2]
 
 
 def _motion(frames: int, seed: int) -> Float:
     return np.random.default_rng(seed).normal(size=(frames, 17, 3)).cumsum(axis=0)
 
 
-@pytest.mark.parametrize(
-    ("frames", "others", "radius"), [(40, 40, 5), (50, 37, 4), (37, 50, 4), (30, 30, None), (1, 20, None), (20, 1, 0), (1, 1, 0)]
-)
-def test_cost_and_path_agree_with_tslearn(frames: int, others: int, radius: int | None) -> None:
-    ours, theirs = _motion(frames, 1), _motion(others, 2)
-    band = {} if radius is None else {"global_constraint": "sakoe_chiba", "sakoe_chiba_radius": radius}
-    path, distance = dtw_path(ours.reshape(frames, -1), theirs.reshape(others, -1), **band)
-    found = warp(ours, theirs, radius)
-    assert found.cost == pytest.approx(distance**2, rel=1e-9)
-    assert found.path.tolist() == [list(pair) for pair in path]
+CASES = ((40, 40, 5), (50, 37, 4), (37, 50, 4), (30, 30, None), (1, 20, None), (20, 1, 0), (1, 1, 0))
+"""Frames of the one motion and of the other, and the band's radius."""
+
+
+@pytest.mark.slow
+def test_costs_and_paths_agree_with_tslearn(tmp_path: Path) -> None:
+    pairs = {}
+    for number, (frames, others, radius) in enumerate(CASES):
+        pairs[f"ours{number}"], pairs[f"theirs{number}"] = (_motion(frames, 1), _motion(others, 2))
+        pairs[f"radius{number}"] = np.array(-1 if radius is None else radius)
+    file = tmp_path / "pairs.npz"
+    flat = {name: array.reshape(len(array), -1) if array.ndim else array for name, array in pairs.items()}
+    np.savez(file, allow_pickle=False, **flat)
+    words = [sys.executable, "-m", "tests.tslearn_paths", str(file)]
+    told = subprocess.run(words, capture_output=True, text=True, cwd=ROOT, timeout=100, check=True).stdout
+    for number, ((_, _, radius), (path, cost)) in enumerate(zip(CASES, json.loads(told), strict=True)):
+        found = warp(pairs[f"ours{number}"], pairs[f"theirs{number}"], radius)
+        assert found.cost == pytest.approx(cost, rel=1e-9)
+        assert found.path.tolist() == path
 
 
 def test_the_cost_is_the_sum_along_the_path_also_where_joints_are_unknown() -> None:

@@ -6,9 +6,11 @@ import pytest
 from models.arrays import Float
 from models.motions.actions.library import ACTIONS
 from models.motions.motion import Handed
+from models.skeleton import coco
 from models.teaching.standard import FRAME_S, Exemplar, Standard
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.attempts import AttemptFinder
+from services.evaluation.features import Features, features_of
 from services.evaluation.keyframes import refine
 from services.evaluation.normalise import mirrored
 from services.evaluation.track import known_track
@@ -48,6 +50,13 @@ def stream(*exemplars: Exemplar, seed: int = 0) -> tuple[Float, list[tuple[float
     parts.append(np.repeat(parts[-1][-1:], WAIT, axis=0))
     joints = np.concatenate(parts)
     return joints + np.random.default_rng(seed).normal(0, 0.006, joints.shape), moments
+
+
+def stretched(joints_m: Float, count: int) -> Float:
+    """(count, 17, 3) the same motion at another tempo."""
+    at = np.linspace(0, len(joints_m) - 1, count)
+    columns = joints_m.reshape(len(joints_m), -1).T
+    return np.stack([np.interp(at, range(len(joints_m)), column) for column in columns], axis=1).reshape(count, *joints_m.shape[1:])
 
 
 def found(finder: AttemptFinder, joints_m: Float) -> list[tuple[FoundAttempt, float]]:
@@ -100,12 +109,89 @@ def test_only_what_was_chosen_is_looked_for(finder: AttemptFinder) -> None:
         finder.choose("handstand")
 
 
+def test_a_choice_tells_of_the_attempt_that_was_waited_for_and_the_same_one_again_changes_nothing(finder: AttemptFinder) -> None:
+    joints, (moments,) = stream(performed("squat"))
+    over = round(moments[-1] / FRAME_S) + 4
+    finder.choose(None)
+    finder.reset()
+    assert not found(finder, joints[:over])
+    waited_for = finder.finish()
+    assert waited_for is not None
+    assert waited_for.action == "squat"
+    assert finder.finish() is None
+    finder.reset()
+    assert not found(finder, joints[:over])
+    finder.choose(None)
+    waited_for = finder.finish()
+    assert waited_for is not None
+    assert waited_for.action == "squat"
+
+
+def test_what_was_performed_before_it_was_chosen_is_not_told_as_chosen(finder: AttemptFinder) -> None:
+    before, _ = stream(performed("squat"))
+    after, _ = stream(performed("squat"))
+    finder.choose("soccer_kick")
+    finder.reset()
+    assert not found(finder, before)
+    finder.choose("squat")
+    attempts = [finder.push(joints, (len(before) + number) * FRAME_S) for number, joints in enumerate(after)]
+    (attempt,) = [attempt for attempt in attempts if attempt is not None]
+    assert attempt.moments_s[0] > len(before) * FRAME_S
+    finder.choose(None)
+
+
+def test_an_attempt_with_which_the_stream_begins_is_found(finder: AttemptFinder) -> None:
+    joints, (moments,) = stream(performed("soccer_kick"))
+    finder.choose(None)
+    finder.reset()
+    ((attempt, _),) = found(finder, joints[round(moments[0] / FRAME_S) :])
+    assert attempt.action == "soccer_kick"
+
+
+def test_a_movement_as_slow_as_counts_is_found_though_it_takes_half_a_minute() -> None:
+    squat = performed("squat")
+    joints = stretched(squat.joints_m, round(18.0 / FRAME_S))
+    share = (len(joints) - 1) / (len(squat.joints_m) - 1)
+    start, exertion, peak, end = (share * moment_s for moment_s in squat.moments_s)
+    unknown = np.full(joints.shape[:2], np.nan)
+    slow = Standard("squat", 1, "made for this test", Exemplar(joints, (start, exertion, peak, end)), unknown, 1.6)
+    slower = stretched(joints, round(1.6 * len(joints)))
+    performance = np.concatenate((np.repeat(slower[:1], WAIT, axis=0), slower, np.repeat(slower[-1:], WAIT, axis=0)))
+    attempts = [attempt.action for attempt, _ in found(AttemptFinder((slow,)), performance)]
+    assert "squat" in attempts
+
+
+def test_a_child_after_a_grown_up_is_measured_anew() -> None:
+    joints, (moments,) = stream(performed("star_jump"))
+    nobody = np.full((round(1.5 / FRAME_S), *joints.shape[1:]), np.nan)
+    grown_up = 1.5 * joints[:60]
+    alone = features_of(joints, FRAME_S)
+    features = Features(FRAME_S)
+    for frame in (*grown_up, *nobody):
+        features.push(frame)
+    after = np.stack([features.push(frame) for frame in joints])
+    jump = slice(round(moments[0] / FRAME_S), round(moments[-1] / FRAME_S))
+    np.testing.assert_allclose(after[jump], alone[jump], atol=0.05)
+
+
 def test_an_attempt_with_a_gap_and_an_unseen_arm_is_found(finder: AttemptFinder) -> None:
     joints, _ = stream(performed("long_jump"))
     joints[WAIT + 30 : WAIT + 37] = np.nan
     joints[:, [7, 9]] = np.nan
     finder.reset()
     assert [attempt.action for attempt, _ in found(finder, joints)] == ["long_jump"]
+
+
+def test_an_attempt_whose_keyframes_cannot_be_seen_has_them_where_the_standard_has(finder: AttemptFinder) -> None:
+    joints, (moments,) = stream(performed("squat"))
+    finder.choose(None)
+    finder.reset()
+    ((seen, _),) = found(finder, joints)
+    joints[1:, [coco.INDEX["left_ankle"], coco.INDEX["right_ankle"]]] = np.nan
+    finder.reset()
+    ((attempt, _),) = found(finder, joints)
+    assert (attempt.action, seen.timed, attempt.timed) == ("squat", True, False)
+    assert np.abs(np.array(attempt.moments_s) - moments).max() < 0.4
 
 
 def test_what_is_hardly_seen_is_no_attempt(finder: AttemptFinder) -> None:

@@ -176,7 +176,7 @@ def attempt_at(performance: Performance, subject: Subject) -> Act:
 @pytest.mark.slow
 def test_a_lesson_of_attempts_and_what_is_between_them_is_one_motion() -> None:
     subject, start = pupil(), Standpoint(1.0, 2.0, -0.5)
-    actions = sorted(ACTIONS)
+    actions = sorted(ACTIONS)[::3]
     acts: list[Act] = []
     for number, action in enumerate(actions):
         acts += [partial(spend, what, subject) for what in (Go(Standpoint(float(number), 0.0, 1.0)), Pass("wait", 1.0, number))]
@@ -189,5 +189,5 @@ def test_a_lesson_of_attempts_and_what_is_between_them_is_one_motion() -> None:
         at = standpoint_of(whole.pose_at(begins[attempt.action]))
         assert (at.x_m, at.y_m) == pytest.approx((float(actions.index(attempt.action)), 0.0), abs=1e-4)
         assert at.heading_rad == pytest.approx(1.0, abs=1e-4)
-    joints = [subject.body.joints_m(whole.pose_at(at_s)) for at_s in np.arange(0, whole.duration_s, 1 / 60)]
-    assert np.linalg.norm(np.diff(joints, axis=0), axis=-1).max() * 60 < 30
+    joints = [subject.body.joints_m(whole.pose_at(at_s)) for at_s in np.arange(0, whole.duration_s, 1 / 30)]
+    assert np.linalg.norm(np.diff(joints, axis=0), axis=-1).max() * 30 < 30

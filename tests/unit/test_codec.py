@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from models.messages import codec
+from models.messages.attempts import AttemptsBegin, FeedbackRequest, RememberedFeedback
 from models.messages.control import CropPrediction, ViewControl
 from models.messages.feedback import ActivityRequest, Feedback, Judgement, MeasureResult
 from models.messages.health import (
@@ -23,6 +24,7 @@ from models.messages.health import (
 from models.messages.lesson import Entry, FusionLog, LessonRequest, SegmentRequest
 from models.messages.motion import CameraUse, Motion
 from models.messages.observation import Crop, Observation, Person
+from models.messages.pupil import PupilCorrection, PupilCorrections, PupilTurn
 from models.messages.trouble import Trouble
 
 GOLDEN = Path(__file__).parents[1] / "golden/codec"
@@ -65,6 +67,14 @@ def feedback() -> Feedback:
         colours=np.where(states == 2, np.arange(3, dtype=np.uint8)[:, None] + 1, 0).astype(np.uint8),
         standard_m=standard_m,
     )
+
+
+def feedback_of_nothing_wrong() -> Feedback:
+    """The same kick as it should be."""
+    told = feedback()
+    measures = tuple(msgspec.structs.replace(one, verdict="fair") if one.verdict == "poor" else one for one in told.measures)
+    judgements = tuple(Judgement(one.fault, -0.125, 0.25) for one in told.judgements)
+    return msgspec.structs.replace(told, cue="", cue_certainty=0.0, judgements=judgements, measures=measures, fine=True)
 
 
 def feedback_of_nothing() -> Feedback:
@@ -136,6 +146,29 @@ def examples() -> dict[str, codec.Message]:
         "feedback_unknown": feedback_of_nothing(),
         "activity_request": ActivityRequest("soccer_kick"),
         "activity_request_any": ActivityRequest(""),
+        "feedback_fine": feedback_of_nothing_wrong(),
+        "feedback_of_a_pupil": msgspec.structs.replace(feedback_of_nothing(), pupil="B12"),
+        "health_evaluation_pupil": Health(
+            "evaluation", 4715, 10**15, "ok", (), 0.05, 160.5,
+            evaluation=EvaluationHealth("long_jump", "tablet", "moving", 7, 0.25, 31.5, 0, 1, "7", 10**15 - 9),
+        ),
+        "pupil_turn": PupilTurn("B12", 10**15),
+        "pupil_turn_nobody": PupilTurn("", 10**15),
+        "pupil_corrections": PupilCorrections((PupilCorrection(10**9, "7"), PupilCorrection(10**9 + 1, ""))),
+        "health_recorder_attempts": Health(
+            "recorder", 4712, 10**15, "ok", (), 0.01, 60.5,
+            recorder=RecorderHealth("2026-11-22-7b", "7b", 61.5, 2_250_000, 1, 10**15 - 7, 53, (10**9, 10**9 + 1)),
+        ),
+        "health_evaluation_list": Health(
+            "evaluation", 4715, 10**15, "ok", (), 0.05, 160.5,
+            evaluation=EvaluationHealth(
+                "long_jump", "tablet", "moving", 7, 0.25, 31.5, 0, 1, "7", 10**15 - 9, 10**15 - 11, 53, 10**9
+            ),
+        ),
+        "attempts_begin": AttemptsBegin(10**15, 53, 10**9),
+        "feedback_request": FeedbackRequest(10**9),
+        "remembered_feedback": RememberedFeedback(feedback(), 49),
+        "remembered_feedback_none": RememberedFeedback(None, 0),
         "fusion_log": FusionLog(10**15, 3, (Entry("observation", 10**15 + 7, b"\x01\x01"), Entry("tick", 10**15 + 8, b""))),
         "segment_request": SegmentRequest(10**15),
         "lesson_request": LessonRequest("start", "7b, throwing"),
@@ -311,6 +344,37 @@ def test_feedback_that_cannot_be_is_refused_by_the_reader(changes: dict[str, obj
         codec.decode(changed(feedback(), **changes), Feedback)
 
 
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"cue": "stiff_knee", "cue_certainty": 0.9, "praise": ""},
+        {"score": None, "score_sigma": None},
+        {"judgements": [Judgement("stiff_knee", 0.0, 0.1), Judgement("upright_trunk", None, None)]},
+        {"measures": [MeasureResult("foot_speed", 1.0, 0.5, "m_s", "poor", low=8.0)], "shown": ["foot_speed"]},
+    ],
+)
+def test_fine_is_refused_beside_what_speaks_against_it(changes: dict[str, object]) -> None:
+    with pytest.raises(codec.CodecError, match="fine is only what was judged as a whole"):
+        codec.decode(changed(feedback_of_nothing_wrong(), **changes), Feedback)
+
+
+def test_a_poor_measure_that_nobody_is_shown_speaks_against_nothing() -> None:
+    poor = MeasureResult("foot_speed", 1.0, 0.5, "m_s", "poor", low=8.0)
+    changes: dict[str, object] = {"measures": [poor], "shown": []}
+    assert codec.decode(changed(feedback_of_nothing_wrong(), **changes), Feedback).fine
+
+
+def test_what_silence_means_and_that_nobody_approves_of_lessons_from_before_it_was_said() -> None:
+    """What is not said of a lesson is not taken for praise: whether its faults were all judged nobody has asked then."""
+    assert feedback().silence is None
+    assert feedback_of_nothing_wrong().silence == "fine"
+    assert feedback_of_nothing().silence == "unseen"
+    before = msgspec.msgpack.decode(codec.encode(feedback_of_nothing_wrong())[2:])
+    assert before.pop("fine") is True
+    read = codec.decode(codec.encode(feedback())[:2] + msgspec.msgpack.encode(before), Feedback)
+    assert (read.fine, read.silence) == (False, "unsure")
+
+
 def test_no_measure_without_a_value_has_a_verdict() -> None:
     with pytest.raises(ValueError, match="verdict good"):
         MeasureResult("balance", None, None, "cm", "good")
@@ -322,3 +386,17 @@ def test_no_measure_without_a_value_has_a_verdict() -> None:
 def test_an_activity_that_is_no_name_is_refused_by_the_reader(activity: object) -> None:
     with pytest.raises(codec.CodecError, match="activity"):
         codec.decode(changed(ActivityRequest(""), activity=activity), ActivityRequest)
+
+
+@pytest.mark.parametrize("name", ["feedback_of_a_pupil", "pupil_turn"])
+@pytest.mark.parametrize("pupil", ["Anna", "ANNA", "-7", "7 B", "123456789", "7\n", None, 7])
+def test_a_pupil_who_is_no_code_is_refused_by_the_reader(name: str, pupil: object) -> None:
+    message = examples()[name]
+    with pytest.raises(codec.CodecError, match="pupil"):
+        codec.decode(changed(message, pupil=pupil), type(message))
+
+
+def test_whose_an_attempt_was_is_left_out_where_nobody_was_named() -> None:
+    """So that lessons from before there were codes are read as they are."""
+    assert b"pupil" not in codec.encode(feedback())
+    assert codec.decode(codec.encode(feedback()), Feedback).pupil == ""

@@ -17,18 +17,18 @@ from tests.bench.teaching.tune import candidates
 SQUAT = [fault.name for fault in ACTIONS["squat"].faults]
 
 
-def one(faults: dict[str, float], cue: str = "", praise: str = "", severity: float = 1.0) -> Result:
+def one(faults: dict[str, float], cue: str = "", praise: str = "", severity: float = 1.0, *, fine: bool = False) -> Result:
     judged = tuple(Judgement(name, severity if name in faults else 0.0, 0.1) for name in SQUAT)
-    return Result(Case("development", 0, "squat", faults), Said(praise, cue, 0.9 if cue else 0.0), judged)
+    return Result(Case("development", 0, "squat", faults), Said(praise, cue, 0.9 if cue else 0.0, fine), judged)
 
 
 RESULTS = [
     one({}),
-    one({}, praise="knees_in"),
+    one({}, praise="knees_in", fine=True),
     one({}, cue="heels_up"),
     one({"knees_in": 1.0}, cue="knees_in"),
     one({"heels_up": 1.0}, cue="knees_in"),
-    one({"heels_up": 1.0}),
+    one({"heels_up": 1.0}, fine=True),
     one({"heels_up": 0.5}, cue="heels_up", severity=0.6),
     one({"heels_up": 1.0, "knees_in": 1.0}, cue="knees_in"),
     one({"heels_up": 1.0, "too_shallow": 1.0}, cue="knees_in"),
@@ -42,6 +42,8 @@ def test_named_faults_false_cues_and_doubles_are_counted_apart() -> None:
     assert found["wrong_cue_pct"] == pytest.approx(100 / 3)
     assert found["cue_double_pct"] == pytest.approx(50)
     assert found["praised_pct"] == pytest.approx(100 / 3)
+    assert found["fine_pct"] == pytest.approx(100 / 3)
+    assert found["false_fine_pct"] == pytest.approx(100 / 5)
 
 
 def test_what_was_not_measured_is_no_figure() -> None:

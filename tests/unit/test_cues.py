@@ -1,14 +1,15 @@
 """At most one thing to correct, and only what is sure; what was good comes first."""
 
 import itertools
+from collections.abc import Sequence
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.messages.feedback import Judgement
+from models.messages.feedback import VERDICTS, Judgement, MeasureResult, Verdict
 from models.teaching.schema import Fault, Teaching, decode_teaching
-from services.evaluation.cues import Said, above, choose
+from services.evaluation.cues import CALLED, POSSIBLE, VAGUE, Said, above, choose
 from tests.teaching_texts import GOOD, VOCABULARY
 
 FILE = decode_teaching(GOOD.encode(), "squat.toml", VOCABULARY)
@@ -23,9 +24,15 @@ def teaching(**importances: float) -> Teaching:
     return Teaching(version=1, action="squat", title=FILE.title, shown=FILE.shown, fault=faults)
 
 
-def said(importances: dict[str, float], **judged: tuple[float, float] | None) -> Said:
+def said(importances: dict[str, float], numbers: Sequence[Verdict] = (), /, **judged: tuple[float, float] | None) -> Said:
     judgements = [Judgement(name, *(one or (None, None))) for name, one in judged.items()]
-    return choose(teaching(**importances), judgements)
+    return choose(teaching(**importances), judgements, [number(place, verdict) for place, verdict in enumerate(numbers)])
+
+
+def number(place: int, verdict: Verdict) -> MeasureResult:
+    """Of which somebody may say this, about none of the faults."""
+    value = None if verdict == "unknown" else 1.0
+    return MeasureResult(f"number_{place}", value, None if value is None else 0.1, "deg", verdict)
 
 
 def test_what_is_surely_a_fault_is_corrected() -> None:
@@ -75,6 +82,16 @@ def test_praise_is_of_the_most_important_point_that_was_good() -> None:
     assert said({"a": 1, "b": 3, "c": 2}, a=(0.0, 0.1), b=(0.0, 0.1), c=(0.0, 0.1)).praise == "b"
 
 
+def test_a_point_of_which_nothing_is_known_is_not_praised_however_good_it_looks() -> None:
+    """-1 is where a measure is cut off that went mad."""
+    assert said({"a": 3}, a=(-1.0, 0.9)).praise == ""
+    assert said({"a": 3, "b": 1}, a=(-1.0, 0.9), b=(0.0, 0.1)).praise == "b"
+
+
+def test_what_is_beyond_good_is_no_better_than_what_is_right() -> None:
+    assert said({"a": 2, "b": 3}, a=(-1.0, 0.05), b=(0.0, 0.05)).praise == "b"
+
+
 def test_what_may_have_been_wrong_is_not_praised() -> None:
     assert said({"a": 3, "b": 1}, a=(0.35, 0.1), b=(0.0, 0.1)).praise == "b"
     assert said({"a": 3}, a=(0.0, 0.5)).praise == ""
@@ -95,9 +112,15 @@ def test_what_is_corrected_is_never_praised_and_always_called(faults: list[tuple
         severity = judged[one.cue]
         assert severity is not None
         assert severity[0] > 0.5
+        assert severity[1] <= VAGUE
         assert one.certainty >= 0.75
     else:
         assert one.certainty == 0
+    if one.praise:
+        praised = judged[one.praise]
+        assert praised is not None
+        assert praised[0] < 0.4
+        assert praised[1] <= VAGUE
 
 
 @given(st.floats(0.51, 1.5), st.floats(0.51, 1.5), st.floats(0.01, 0.5))
@@ -120,3 +143,50 @@ def test_the_order_of_the_file_does_not_change_what_is_said() -> None:
         for order in itertools.permutations("abc")
     }
     assert len(every) == 1
+
+
+def test_where_all_was_seen_and_nothing_was_wrong_silence_is_approval() -> None:
+    assert said({"a": 1, "b": 1}, ["good", "fair", "unknown"], a=(0.1, 0.2), b=(-0.5, 0.1)).fine
+
+
+@pytest.mark.parametrize(
+    ("numbers", "judged"),
+    [
+        (["good", "poor"], {"a": (0.0, 0.1), "b": (0.0, 0.1)}),
+        (["good"], {"a": (0.0, 0.1), "b": None}),
+        (["good"], {"a": (0.0, 0.1), "b": (0.4, 0.2)}),  # 31 % for the fault
+        (["good"], {"a": (0.0, 0.1), "b": (-0.9, 0.6)}),  # hardly seen, however good it looks
+        (["good"], {"a": (0.6, 0.2), "b": (0.6, 0.2)}),  # each with 69 %, which is not sure enough to be said
+        (["good"], {"a": (0.0, 0.1), "b": (1.0, 0.1)}),  # that is corrected
+    ],
+)
+def test_silence_is_no_approval(numbers: list[Verdict], judged: dict[str, tuple[float, float] | None]) -> None:
+    assert not said({"a": 1, "b": 1}, numbers, **judged).fine
+
+
+seen = st.one_of(st.none(), st.tuples(st.floats(-1, 0.8), st.floats(0, 0.6)))
+attempts = st.tuples(
+    st.lists(st.tuples(st.floats(0.1, 5), seen), min_size=1, max_size=3), st.lists(st.sampled_from(VERDICTS), max_size=2)
+)
+
+
+@given(attempts)
+def test_fine_is_never_beside_a_poor_number_or_what_nobody_judged_or_a_fault_that_may_have_been_made(
+    attempt: tuple[list[tuple[float, tuple[float, float] | None]], list[Verdict]],
+) -> None:
+    faults, numbers = attempt
+    names = "abc"[: len(faults)]
+    judged = dict(zip(names, (one for _, one in faults), strict=True))
+    one = said({name: importance for name, (importance, _) in zip(names, faults, strict=True)}, numbers, **judged)
+    if one.fine:
+        assert one.cue == ""
+        assert "poor" not in numbers
+        assert None not in judged.values()
+        assert all(above(Judgement(name, *(each or (None, None))), CALLED) <= POSSIBLE for name, each in judged.items())
+
+
+@given(st.lists(st.tuples(st.floats(0.1, 5), st.tuples(st.floats(-1, 0.2), st.floats(0, 0.4))), min_size=1, max_size=6))
+def test_who_does_all_well_is_told_so(faults: list[tuple[float, tuple[float, float]]]) -> None:
+    names = "abcdef"[: len(faults)]
+    importances = {name: importance for name, (importance, _) in zip(names, faults, strict=True)}
+    assert said(importances, ["good"], **dict(zip(names, (one for _, one in faults), strict=True))).fine

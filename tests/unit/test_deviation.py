@@ -1,5 +1,7 @@
 """Colours: green only where it is surely so, grey where nobody can tell."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,11 +12,12 @@ from models.skeleton import coco
 from models.teaching.schema import Tolerance
 from models.teaching.standard import FRAME_S, Exemplar, Standard
 from services.evaluation.alignment import align
-from services.evaluation.deviation import Deviation, deviate
+from services.evaluation.deviation import Deviation, _sigma_m, deviate
 from services.evaluation.track import Track, known_track
 from services.evaluation.uncertainty import EXACT, NETWORK, Uncertainty
+from tests.taught import shallow_squat, shipped
 
-WRIST, ELBOW = coco.INDEX["right_wrist"], coco.INDEX["right_elbow"]
+WRIST, ELBOW, HIP, KNEE = (coco.INDEX[f"right_{part}"] for part in ("wrist", "elbow", "hip", "knee"))
 FRAMES = 45
 
 
@@ -128,3 +131,66 @@ def test_noise_of_the_stated_size_makes_no_wrong_red_and_no_green_of_a_fault(sig
 
 def test_an_attempt_that_shows_nothing_is_not_aligned() -> None:
     assert align(seen(np.full((FRAMES, coco.COUNT, 3), np.nan)), standard()) is None
+
+
+def test_a_movement_that_is_too_small_is_not_green_where_it_should_be_largest() -> None:
+    """A squat to half the depth passes the same poses, and is nowhere as deep."""
+    squat, tolerance = shipped().standards["squat"], shipped().teachings["squat"].tolerance
+    for depth, never in ((0.5, Colour.GREEN), (1.0, Colour.RED)):
+        track = seen(shallow_squat(depth))
+        aligned = align(track, squat)
+        assert aligned is not None
+        colours = deviate(aligned, track, squat, tolerance).colours
+        lowest = int(track.joints_m[:, HIP, 2].argmin())
+        assert (colours[lowest - 2 : lowest + 3, [HIP, KNEE]] != never).all(), depth
+        assert (colours[:3] == Colour.GREEN).all(), "he stands as he should"
+    assert (colours == Colour.GREEN).mean() > 0.99
+
+
+def test_a_movement_that_is_too_small_is_no_better_for_a_frame_that_was_lost_at_its_end() -> None:
+    squat, tolerance = shipped().standards["squat"], shipped().teachings["squat"].tolerance
+    joints = shallow_squat(0.5)
+    lowest = int(joints[:, HIP, 2].argmin())
+    for lost in (slice(lowest, lowest + 1), slice(lowest - 2, lowest + 3)):
+        gap = joints.copy()
+        gap[lost] = np.nan
+        track = seen(gap)
+        aligned = align(track, squat)
+        assert aligned is not None
+        colours = deviate(aligned, track, squat, tolerance).colours
+        assert (colours[lost] == Colour.GREY).all()
+        assert (colours[[lost.start - 1, lost.stop], HIP] != Colour.GREEN).all()
+
+
+def test_nobody_is_judged_against_a_standard_that_faces_elsewhere() -> None:
+    """Who is seen only once he has turned: to where he looked at first is not known."""
+    turn = np.linspace(0, np.pi / 2, FRAMES)
+    joints = waving()
+    x, y = joints[..., 0].copy(), joints[..., 1].copy()
+    joints[..., 0], joints[..., 1] = np.cos(turn)[:, None] * x - np.sin(turn)[:, None] * y, np.sin(turn)[:, None] * x
+    joints[..., 1] += np.cos(turn)[:, None] * y
+    joints[:20, coco.INDEX["left_shoulder"]] = np.nan
+    assert align(seen(joints), standard()) is None
+    joints = waving()
+    joints[:5, coco.INDEX["left_shoulder"]] = np.nan
+    assert align(seen(joints), standard()) is not None
+
+
+@pytest.mark.parametrize("part", ["wrist", "ankle", "nose"])
+def test_where_a_body_faces_how_large_it_is_and_where_its_hips_are_is_as_unsure_as_its_landmarks(part: str) -> None:
+    """A wrist that is stretched out is moved by what hips and shoulders are wrong by."""
+    random = np.random.default_rng(3)
+    landmarks = replace(NETWORK, timing_s=0.0)
+    raised, joint = FRAMES // 4, coco.INDEX["nose" if part == "nose" else f"right_{part}"]
+    exact = align(seen(waving(), 0.0), standard())
+    assert exact is not None
+    apart = []
+    for _ in range(150):
+        errors = np.array(NETWORK.landmark_m)[:, None] * (NETWORK.mixed @ random.standard_normal((coco.COUNT, 3)))
+        found = align(seen(waving() + errors, 0.0), standard())
+        assert found is not None
+        apart.append((found.joints_m - exact.joints_m)[raised, joint])
+    for axis in range(3):
+        towards = np.broadcast_to(np.eye(3)[axis], (FRAMES, coco.COUNT, 3))
+        stated = _sigma_m(exact, seen(waving(), 0.0), towards, landmarks)[raised, joint]
+        assert 0.8 < stated / np.std(apart, axis=0)[axis] < 1.6, axis

@@ -64,9 +64,10 @@ def test_a_motion_that_never_came_is_an_unknown_frame_and_is_counted() -> None:
 )
 def test_what_does_not_go_on_begins_a_new_stream(what: str, after: Motion) -> None:
     stream = streamed(3, 4, 5)
-    assert stream.take(after, CONFIG) is None, what
-    assert [frame.number for frame in stream.frames] == [0]
-    assert stream.take(smooth(after.sequence + 1, late_ns=after.t_ns - smooth(after.sequence).t_ns, epoch=after.epoch), CONFIG)
+    assert not stream.goes_on(after, CONFIG), what
+    assert [frame.number for frame in stream.take(after, CONFIG)] == [0]
+    assert len(stream.frames) == 1
+    assert stream.goes_on(smooth(after.sequence + 1, late_ns=after.t_ns - smooth(after.sequence).t_ns, epoch=after.epoch), CONFIG)
 
 
 def test_a_gap_that_is_too_long_is_counted_all_the_same() -> None:
@@ -86,8 +87,9 @@ def test_what_is_played_faster_is_of_the_pupils_own_time() -> None:
 def test_a_player_that_was_late_does_not_tear_the_stream() -> None:
     stream = Stream()
     stream.take(smooth(0, speed=2.0), PLAYED_TWICE_AS_FAST)
-    assert stream.take(smooth(1, speed=2.0, late_ns=6 * FRAME_NS), PLAYED_TWICE_AS_FAST) is not None
-    assert stream.take(smooth(2, speed=2.0), PLAYED_TWICE_AS_FAST) is not None
+    stream.take(smooth(1, speed=2.0, late_ns=6 * FRAME_NS), PLAYED_TWICE_AS_FAST)
+    stream.take(smooth(2, speed=2.0), PLAYED_TWICE_AS_FAST)
+    assert [frame.number for frame in stream.frames] == [0, 1, 2]
 
 
 def test_the_stream_does_not_grow_for_ever() -> None:

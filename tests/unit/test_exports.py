@@ -11,7 +11,7 @@ from models.motions.rotations import about
 from models.skeleton import coco
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.track import Track, known_track
-from services.lesson.export import beside, glb, mot, trc
+from services.lesson.export import beside, c3d, glb, mot, trc
 from services.lesson.export.armature import armature
 from services.lesson.export.axes import FIGURES, OPENSIM, OURS
 from services.lesson.export.formats import files_of
@@ -221,6 +221,47 @@ def test_glb_says_in_its_extras_who_it_is_and_when_the_keyframes_are() -> None:
     assert (extras["pupil"], extras["attempts"][0]["action"]) == ("P07", "badminton_clear")
     assert list(extras["attempts"][0]["keyframes_s"]) == ["start", "exertion", "peak", "end"]
     assert struct.unpack_from("<II", data, 4) == (2, len(data))
+
+
+def scales_of(data: bytes) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Instants and scales (n,) of each shape of a GLB that comes and goes."""
+    (length,) = struct.unpack_from("<I", data, 12)
+    told, binary = json.loads(data[20 : 20 + length]), data[28 + length :]
+
+    def values(accessor: int) -> np.ndarray:
+        view = told["bufferViews"][told["accessors"][accessor]["bufferView"]]
+        return np.frombuffer(binary, "<f4", view["byteLength"] // 4, view["byteOffset"])
+
+    (animation,) = told["animations"]
+    found = {}
+    for channel in animation["channels"]:
+        if channel["target"]["path"] == "scale":
+            sampler = animation["samplers"][channel["sampler"]]
+            name = told["nodes"][channel["target"]["node"]]["name"]
+            found[name] = (values(sampler["input"]), values(sampler["output"]).reshape(-1, 3)[:, 0])
+    assert {node["name"] for node in told["nodes"] if "mesh" in node} >= set(found)
+    return found
+
+
+def test_no_shape_of_a_glb_stays_behind_when_a_hip_is_out_of_sight() -> None:
+    """All hangs on the hips: a head at the place where they were last is a head where nobody is."""
+    take = without(Take(moving(5, 31), "run"), ("left_hip",), 15)
+    scales = scales_of(glb.encode(take))
+    assert {name.removesuffix(" shape") for name in scales} >= {"Head", "Neck", "Spine", "LeftArm", "RightLeg"}
+    for name, (instants_s, sizes) in scales.items():
+        assert sizes.tolist() == [1.0, 0.0], name
+        assert instants_s[1] == pytest.approx(15 / 30, abs=1e-6)
+
+
+def test_a_hand_out_of_sight_takes_nothing_else_with_it() -> None:
+    take = without(Take(moving(5, 31), "run"), ("left_wrist",), 15)
+    assert list(scales_of(glb.encode(take))) == ["LeftForeArm shape"]
+
+
+def test_a_c3d_holds_no_letters_that_it_cannot_name() -> None:
+    whole = performed()
+    with pytest.raises(UnicodeEncodeError):
+        c3d.encode(Take(whole.track, whole.name, "Ö7"))
 
 
 def test_bones_are_as_long_as_they_are_in_the_median_frame() -> None:

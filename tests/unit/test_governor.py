@@ -1,7 +1,6 @@
 """The governor on a simulated box: it must find the best rate that the CPU carries, keep it, and never swing."""
 
 import itertools
-from dataclasses import dataclass
 
 import msgspec
 import pytest
@@ -9,43 +8,10 @@ import pytest
 from models.messages.health import CameraHealth
 from services.fusion import governor
 from services.fusion.governor import LADDER, GovernorState, Load
+from services.fusion.inference_cost import InferenceCost
+from tests.governed_box import Box, run
 
 RUNNING = GovernorState(started_ns=0)
-POSE_MS = {"thunder": 24.0, "lightning": 7.0}
-DECODE_MS = 4.0
-
-
-@dataclass
-class Box:
-    """A machine whose cameras get what the CPU allows: demand above capacity lowers every camera's rate alike.
-
-    `contention` is how much dearer everything becomes when all cores are busy.
-    """
-
-    cores: float
-    base_cores: float = 0.25
-    slowness: float = 1.0
-    cameras: int = 4
-    contention: float = 0.0
-    used_cores: float = 0.0
-
-    def second(self, state: GovernorState) -> Load:
-        level = state.current
-        slowness = self.slowness * (1 + self.contention * self.used_cores / self.cores)
-        stages = {"pose": POSE_MS[level.network] * slowness, "decode": DECODE_MS * slowness}
-        wanted = self.cameras * level.rate_hz * sum(stages.values()) / 1e3
-        share = min(1.0, max(self.cores - self.base_cores, 0.0) / wanted)
-        self.used_cores = min(self.cores, self.base_cores + wanted * share)
-        health = CameraHealth("cam", 30.0, level.rate_hz * share, level.rate_hz, 0, 5.0, level.network, stages)
-        return Load(self.cores, self.used_cores, [health] * self.cameras)
-
-
-def run(box: Box, seconds: int, state: GovernorState | None = None, start_s: int = 0, **limits: float) -> list[GovernorState]:
-    limits = {"max_rate_hz": 30.0, "cpu_target": 0.85} | limits
-    states = [state or GovernorState()]
-    for second in range(start_s + 1, start_s + seconds + 1):
-        states.append(governor.step(states[-1], box.second(states[-1]), second * 10**9, **limits))
-    return states
 
 
 @pytest.mark.parametrize(
@@ -82,6 +48,38 @@ def test_the_rush_of_the_start_neither_lowers_the_rate_nor_spoils_the_plan_for_l
         states.append(governor.step(states[-1], Load(2.0, 2.0, [slow] * 4), second * 10**9, 30.0, 0.85))
     assert {state.level for state in states} == {governor.START}
     assert run(Box(2.0), 120, states[-1], 8)[-1].level == governor.START
+
+
+@pytest.mark.parametrize("rush_s", [20, 40])
+@pytest.mark.parametrize("cores", [1.0, 2.0, 4.0])
+def test_a_rush_that_takes_several_rungs_at_once_is_soon_forgotten(cores: float, rush_s: int) -> None:
+    # Everything that starts takes the whole CPU; half of a core then idled for two minutes.
+    best = run(Box(cores), 300)[-1].level
+    rushed = run(Box(cores, base_cores=cores), rush_s)[-1]
+    after = run(Box(cores), 120, rushed, rush_s)
+    assert rushed.level > best
+    assert {state.level for state in after[45:]} == {best}
+
+
+def test_the_rung_in_force_is_not_given_up_for_what_its_inferences_once_cost() -> None:
+    rushed = GovernorState(level=4, started_ns=0, cost=InferenceCost({"lightning": 25.0}, other_ms=8.0))
+    states = run(Box(1.0), 120, rushed)
+    assert {state.level for state in states} == {4}
+
+
+def test_a_busy_second_every_now_and_then_is_no_reason_to_step_down() -> None:
+    class Judging(Box):
+        """Every fourth second an attempt is judged."""
+
+        seconds = 0
+
+        def second(self, state: GovernorState) -> Load:
+            self.seconds += 1
+            self.base_cores = 0.5 if self.seconds % 4 == 0 else 0.25
+            return super().second(state)
+
+    states = run(Judging(1.0), 300)
+    assert {LADDER[state.level] for state in states[60:]} == {governor.Level(10.0, "lightning")}
 
 
 def test_what_a_network_cost_in_a_bad_minute_is_not_held_against_it_for_ever() -> None:

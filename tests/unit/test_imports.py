@@ -11,6 +11,7 @@ import pytest
 from models.errors import UserError
 from models.messages.motion import JointState
 from models.skeleton import coco
+from services.evaluation.track import Track
 from services.lesson.export import bvh, c3d, trc
 from services.lesson.export.take import Take
 from services.lesson.imports import bvh as bvh_reading
@@ -128,6 +129,56 @@ def scaled_bvh(factor: float) -> bytes:
 def test_the_unit_of_a_bvh_follows_from_its_legs(factor: float) -> None:
     known = bvh_reading.decode(TEXTS["bvh"].encode(), "a.bvh")
     np.testing.assert_allclose(bvh_reading.decode(scaled_bvh(factor), "b.bvh").joints_m, known.joints_m, atol=1e-6)
+
+
+def leg_of(track: Track) -> float:
+    """Thigh and shank, metres."""
+    hip, knee, ankle = (track.joints_m[0, coco.INDEX[f"left_{part}"]] for part in ("hip", "knee", "ankle"))
+    return float(np.linalg.norm(hip - knee) + np.linalg.norm(knee - ankle))
+
+
+KNOWN = bvh_reading.decode(TEXTS["bvh"].encode(), "a.bvh")
+
+
+def with_leg(units: float) -> bytes:
+    """A BVH whose leg is so many units long."""
+    return scaled_bvh(units / (100 * leg_of(KNOWN)))
+
+
+@pytest.mark.parametrize(("units", "leg_m"), [(14.8, 0.835), (15.8, 0.892)], ids=["1.70 m", "1.82 m"])
+def test_a_bvh_of_the_cmu_library_is_read_at_every_size_and_not_as_of_a_dwarf(units: float, leg_m: float) -> None:
+    """It is in units of 5.644 cm; 15.8 of them were taken for inches, and a grown-up for a child of 82 cm."""
+    assert leg_of(bvh_reading.decode(with_leg(units), "cmu.bvh")) == pytest.approx(leg_m, abs=1e-3)
+
+
+def test_a_bvh_whose_unit_may_be_one_of_two_is_refused_until_it_is_said() -> None:
+    with pytest.raises(UserError, match=r"b\.bvh: a leg is 18\.5 long, and the unit may be in or cmu; say it with --unit"):
+        bvh_reading.decode(with_leg(18.5), "b.bvh")
+    assert leg_of(bvh_reading.decode(with_leg(18.5), "b.bvh", "cmu")) == pytest.approx(1.044, abs=1e-3)
+    assert leg_of(bvh_reading.decode(with_leg(18.5), "b.bvh", "in")) == pytest.approx(0.470, abs=1e-3)
+
+
+def test_inches_of_a_tall_person_are_not_centimetres_of_a_small_one() -> None:
+    assert leg_of(bvh_reading.decode(with_leg(42.0), "b.bvh")) == pytest.approx(1.067, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("unit", "told"),
+    [
+        ("mm", "in the unit 'mm' a leg is 0.074 m long, that of nobody; correct --unit"),
+        ("ell", "there is no unit 'ell'; choose one of"),
+    ],
+)
+def test_a_unit_that_makes_nobody_is_refused(unit: str, told: str) -> None:
+    with pytest.raises(UserError) as caught:
+        bvh_reading.decode(with_leg(74.0), "b.bvh", unit)
+    assert told in str(caught.value)
+
+
+def test_a_file_that_says_its_unit_takes_no_other(tmp_path: Path) -> None:
+    (tmp_path / "a.trc").write_text(TEXTS["trc"])
+    with pytest.raises(UserError, match=r"--unit is for BVH files, which say none; .*a\.trc says its own"):
+        read_motion(tmp_path / "a.trc", "cm")
 
 
 def test_a_bvh_of_a_giant_is_refused() -> None:

@@ -5,7 +5,7 @@ import pytest
 
 from models.arrays import Float
 from models.skeleton import coco
-from services.evaluation.normalise import facing, lead_right, mirrored, placed, placing_of, size_m
+from services.evaluation.normalise import PlacingError, facing, lead_right, mirrored, placed, placing_of, size_m
 from services.evaluation.track import known_track
 
 FRAME_S = 1 / 30
@@ -51,15 +51,14 @@ def test_size_is_the_same_for_every_posture_and_unknown_where_a_limb_is_never_se
 def test_what_is_placed_looks_along_x_above_the_origin_in_the_size_asked_for() -> None:
     room = turned(standing(), 2.0) * 1.2 + np.array((3.0, -4.0, 0.0))
     placing = placing_of(np.stack([room] * 20), FRAME_S, size_m(standing()[None]))
-    assert placing is not None
     np.testing.assert_allclose(placed(room, placing), standing(), atol=1e-12)
     np.testing.assert_allclose(placing.matrix @ placing.matrix.T, np.eye(3) / 1.2**2, atol=1e-12)
 
 
 def test_nobody_has_no_placing() -> None:
-    assert placing_of(np.full((5, 17, 3), np.nan), FRAME_S, 1.0) is None
-    assert placing_of(np.zeros((5, 17, 3)), FRAME_S, 1.0) is None
-    assert placing_of(np.zeros((0, 17, 3)), FRAME_S, 1.0) is None
+    for nobody in (np.full((5, 17, 3), np.nan), np.zeros((5, 17, 3)), np.zeros((0, 17, 3))):
+        with pytest.raises(PlacingError, match="how large the pupil is"):
+            placing_of(nobody, FRAME_S, 1.0)
 
 
 def test_a_left_handed_track_is_mirrored_with_its_covariances_and_a_right_handed_one_is_kept() -> None:
@@ -77,3 +76,36 @@ def test_a_left_handed_track_is_mirrored_with_its_covariances_and_a_right_handed
     again = lead_right(image, "left")
     np.testing.assert_allclose(again.covariance_m2, track.covariance_m2)
     np.testing.assert_allclose(facing(image.joints_m[0]), (np.cos(0.3), -np.sin(0.3)), atol=1e-12)
+
+
+def turning() -> Float:
+    """(40, 17, 3) from along x to nearly along y."""
+    return np.stack([turned(standing(), angle) for angle in np.linspace(0, 1.5, 40)])
+
+
+@pytest.mark.parametrize("joint", ["left_hip", "right_shoulder"])
+def test_who_is_seen_only_later_has_no_heading_of_the_beginning(joint: str) -> None:
+    for hidden, known in ((8, True), (12, False)):
+        part = turning()
+        part[:hidden, coco.INDEX[joint]] = np.nan
+        if known:
+            placing_of(part, FRAME_S, 1.0)
+        else:
+            with pytest.raises(PlacingError, match=r"shoulders and both hips at once in its first 0.3 s, and so not to where"):
+                placing_of(part, FRAME_S, 1.0)
+
+
+def test_who_bends_over_at_the_beginning_is_told_from_who_was_hidden() -> None:
+    part = turning()
+    part[:12] = part[:12][..., [2, 1, 0]]
+    with pytest.raises(PlacingError, match=r"does not show the pupil standing upright in its first 0.3 s"):
+        placing_of(part, FRAME_S, 1.0)
+    with pytest.raises(PlacingError, match=r"does not show the pupil standing upright$"):
+        placing_of(part[:12], FRAME_S, 1.0, np.inf)
+
+
+def test_where_a_heading_need_be_known_but_roughly_it_is_the_first_that_is_seen() -> None:
+    part = turning()
+    part[:30, coco.INDEX["left_hip"]] = np.nan
+    placing = placing_of(part, FRAME_S, 1.0, np.inf)
+    assert 1.5 * 30 / 39 <= placing.heading_rad <= 1.5

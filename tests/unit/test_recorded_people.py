@@ -14,6 +14,11 @@ from models.motions.recorded.fit import MarkerFit, fit
 from models.motions.recorded.markers import Markers
 from models.motions.recorded.replay import motion_of
 from models.motions.subject import Subject
+from models.skeleton import coco
+from models.teaching.standard import FRAME_S
+from services.evaluation.search import attempts_in, performances_like
+from services.evaluation.track import known_track
+from services.support.teaching_files import load_standards
 from tests.bodies import body_model, prior_of
 from tests.installed import ROOT
 
@@ -121,3 +126,17 @@ def test_the_wrist_of_a_serve_is_as_fast_as_its_marker(near_s: float) -> None:
     assert 10 < peak < 11
     assert speeds.max() == pytest.approx(peak, rel=0.15)  # fifty frames a second cut a peak by some percent
     assert motion.times_s[near[int(speeds.argmax())]] == pytest.approx(near_s, abs=0.1)
+
+
+@needs_serves
+def test_three_serves_are_found_with_the_badminton_clear_as_template() -> None:
+    """Until the racket hits, a serve is a clear; after it the server falls into the court. So live, where a clear was asked for, it
+    is none, and who searches the recording for one finds all three."""
+    _, found, motion = serves()
+    times_s = np.arange(0, motion.times_s[-1], FRAME_S)
+    joints_m = np.stack([found.body.coco_m(motion.pose_at(float(t_s)))[: coco.COUNT] for t_s in times_s])
+    track, clear = known_track(joints_m, FRAME_S), load_standards(None)["badminton_clear"]
+    like = performances_like(track, clear)
+    assert [one.handed for one in like] == ["right"] * 3
+    assert [one.moment_s("peak") for one in like] == pytest.approx([4.0, 7.6, 11.2], abs=0.2)
+    assert attempts_in(track, clear) == ()

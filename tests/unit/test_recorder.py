@@ -5,12 +5,17 @@ from pathlib import Path
 
 import pytest
 
+from models.messages import codec
+from models.messages.attempts import REMEMBERED
+from models.messages.feedback import Feedback
 from models.messages.lesson import Entry, FusionLog, SegmentRequest
 from services.lesson import recorder as module
 from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_reader import open_lesson
+from services.lesson.pupils import attempts_told
 from services.lesson.recorder import RETRY_NS, SILENT_NS, lesson_name
 from services.lesson.recovery import recover
+from tests.mutations.samples import feedback
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
 from tests.synthetic.recording_room import Room
 
@@ -173,3 +178,38 @@ def test_a_lessons_name_is_a_safe_file_name_that_people_recognise(title: str, en
     assert name[15:] == ending
     assert "/" not in name
     assert lesson_name(header(title), {name, f"{name}-2"}) == f"{name}-3"
+
+
+def attempts_in(told: list[Feedback], sequence: int) -> FusionLog:
+    """A part of the log in which these attempts were told."""
+    return FusionLog(BEGIN_NS + 1, sequence, tuple(Entry("feedback", BEGIN_NS + 2, codec.encode(one)) for one in told))
+
+
+def test_the_recorder_says_which_attempts_the_file_holds_also_after_it_was_killed(room: Room) -> None:
+    told = [feedback(BEGIN_NS + number * SECOND_NS // 100) for number in range(REMEMBERED + 5)]
+    ids = tuple(one.id for one in told)
+    room.recorder.start("one")
+    assert (room.recorder.health().began_ns, room.recorder.health().attempts) == (BEGIN_NS, 0)
+    room.now_ns += SECOND_NS
+    room.recorder.take(attempts_in(told[:2], 0))
+    room.recorder.take(attempts_in(told[2:-1], 1))
+    assert (room.recorder.health().attempts, room.recorder.health().newest) == (REMEMBERED + 4, ids[4:-1])
+    assert room.recorder._running is not None
+    room.recorder._running.writer.close()
+    room.recorder = room.started(recover(room.folder, header().run_ns))
+    health = room.recorder.health()
+    assert (health.began_ns, health.attempts, health.newest) == (BEGIN_NS, REMEMBERED + 4, ids[4:-1])
+    room.recorder.take(attempts_in(told[-1:], 2))
+    assert (room.recorder.health().attempts, room.recorder.health().newest) == (REMEMBERED + 5, ids[5:])
+    room.recorder.stop()
+    assert room.recorder.health().newest == ()
+    (name,) = room.files(SUFFIX)
+    with open_lesson(room.folder / name) as lesson:
+        assert tuple(one.id for one in attempts_told(lesson.parts())) == ids, "the last of them is number `attempts`"
+
+
+def test_an_attempt_that_cannot_be_read_counts_and_has_no_name(room: Room) -> None:
+    room.recorder.start("one")
+    room.now_ns += SECOND_NS
+    room.recorder.take(FusionLog(BEGIN_NS + 1, 0, (Entry("feedback", BEGIN_NS + 2, b"damaged"),)))
+    assert (room.recorder.health().attempts, room.recorder.health().newest) == (1, (0,))

@@ -26,6 +26,13 @@ def test_what_the_school_taught_counts_if_it_is_still_there(tmp_path: Path) -> N
     assert replayed(tmp_path, EvaluationConfig()).evaluation == EvaluationConfig()
 
 
+def test_what_is_taught_is_never_read_from_outside_the_data_folder(tmp_path: Path) -> None:
+    (tmp_path / "data").mkdir()
+    (tmp_path / "theirs").mkdir()
+    for teaching in ("../theirs", str(tmp_path / "theirs")):
+        assert replayed(tmp_path / "data", EvaluationConfig(teaching=teaching)).evaluation == EvaluationConfig()
+
+
 def test_a_replay_has_addresses_of_its_own_and_no_spares(tmp_path: Path) -> None:
     site = replayed(tmp_path, RECORDED)
     assert site.tablet == PAGE

@@ -1,30 +1,34 @@
 """The page to print holds everything itself, says nothing that nobody knows, and lets nobody write into it."""
 
+import json
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
-from typing import get_args
+from typing import Any, get_args
 
 import msgspec
 import numpy as np
 import pytest
 
-from models.messages.feedback import Colour, MeasureResult
+from models.messages.feedback import Colour, Judgement, MeasureResult
 from models.skeleton import coco
 from models.teaching.schema import Language
 from services.evaluation.report import page
-from services.evaluation.report.body import together
+from services.evaluation.report.body import Trunk, parts_of, together
 from services.evaluation.report.curve import curves_of
 from services.evaluation.report.figures import figures
+from services.evaluation.report.numbers import between, estimate
 from services.evaluation.report.sheet import Tried, sheet_of
 from services.evaluation.report.words import ANGLES, WORDS, Words
 from services.evaluation.signals.catalogue import CATALOGUE
+from services.tablet.attempts import shown_of
 from tests.installed import ROOT
 from tests.reported import FACTS, attempt, sheet
 from tests.taught import shipped
 
 VOID = {"meta", "link", "br", "img"}
 ACTIONS = sorted(shipped().teachings)
+GOLDEN = ROOT / "tests/golden"
 
 
 class Reader(HTMLParser):
@@ -104,7 +108,7 @@ def test_an_attempt_shows_its_score_words_and_measures_each_with_its_sigma() -> 
     assert "34 ± 4°" in text
     assert "13.5 ± 0.9 %" in text
     assert text.index(faults["elbow_out"].praise.en) < text.rindex(faults["no_knee_bend"].cue.en)
-    assert WORDS["en"].fine not in text
+    assert all(silence not in text for silence in WORDS["en"].silence.values())
 
 
 def test_numbers_are_written_as_the_language_does() -> None:
@@ -112,6 +116,49 @@ def test_numbers_are_written_as_the_language_does() -> None:
     told = attempt(measures=measures, shown=("knee_bend",))
     assert "\u221213,5 ± 0,9°" in Reader(html(told, language="de")).text
     assert "\u221213.5 ± 0.9°" in Reader(html(told, language="zh")).text
+
+
+def test_measured_values_are_written_as_on_the_page() -> None:
+    """`tests/text.test.ts` of the page reads the same table."""
+    for case in json.loads((GOLDEN / "numbers/estimates.json").read_text()):
+        assert estimate(case["value"], case["sigma"], case["unit"], WORDS["en"]).replace("\u00a0", " ") == case["text"], case
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "unit", "text"),
+    [
+        (0.25, 0.45, "s", "0.25 … 0.45 s"),
+        (45, 90, "deg", "45 … 90°"),
+        (-4.0, 4.0, "deg", "\u22124 … 4°"),
+        (12.5, None, "pct", "≥ 12.5 % of height"),
+        (None, 1.125, "m_s", "≤ 1.125 m/s"),
+        (None, None, "deg", ""),
+    ],
+)
+def test_what_is_good_is_written_as_the_teaching_file_has_it(low: float | None, high: float | None, unit: str, text: str) -> None:
+    assert between(low, high, unit, WORDS["en"]).replace("\u2009", " ").replace("\u00a0", " ") == text
+
+
+def test_a_number_that_is_known_and_says_nothing_for_sure_is_not_called_unknown() -> None:
+    measures = (MeasureResult("knee_bend", 62.0, 30.0, "deg", "unknown", 45, 90),)
+    text = Reader(html(attempt(measures=measures, shown=("knee_bend",)))).text
+    assert "62 ± 30° ? Not sure" in text
+    assert "Not known" not in text
+
+
+def test_a_percentage_says_what_it_is_of() -> None:
+    measures = (MeasureResult("hand_height", 13.52, 0.86, "pct", "good", 9, 22),)
+    told = attempt(measures=measures, shown=("hand_height",))
+    for language in get_args(Language):
+        assert f"22 % {WORDS[language].of_height}" in Reader(html(told, language=language)).text
+
+
+def test_attempts_of_nobody_have_no_mean_score_which_would_be_taken_for_somebodys() -> None:
+    told = (attempt(score=80.0, score_sigma=4.0), attempt(score=60.0, score_sigma=6.0))
+    assert WORDS["en"].mean_score not in html(*told)
+    named = html(*((one, "7") for one in told))
+    assert WORDS["en"].mean_score in named
+    assert "70 ± 5" in Reader(named).text
 
 
 def test_what_is_not_known_is_said_and_no_number_stands_there() -> None:
@@ -127,8 +174,37 @@ def test_what_is_not_known_is_said_and_no_number_stands_there() -> None:
 
 def test_silence_is_not_praise() -> None:
     text = Reader(html(attempt(cue="", cue_certainty=0.0, praise="", score=90.0, score_sigma=3.0))).text
-    assert WORDS["en"].fine in text
+    assert WORDS["en"].silence["unsure"] in text
     assert "✓ Good" not in text.split("Attempt 1")[1].split("Seen from")[0]
+
+
+@pytest.mark.parametrize("language", get_args(Language))
+def test_silence_says_what_it_means_and_the_same_as_the_tablet(language: Language) -> None:
+    words = WORDS[language]
+    unseen: dict[str, Any] = {"cue": "", "cue_certainty": 0.0, "score": None, "score_sigma": None, "measures": (), "shown": ()}
+    seen = {**unseen, "score": 90.0, "score_sigma": 3.0, "judgements": (Judgement("elbow_out", 0.0, 0.1),), "praise": ""}
+    every = {*words.silence.values(), words.rest}
+    for told, silence, said in (
+        ({**seen, "fine": True}, "fine", words.silence["fine"]),
+        ({**seen, "praise": "elbow_out", "fine": True}, "fine", words.silence["fine"]),
+        (seen, "unsure", words.silence["unsure"]),
+        ({**unseen, "praise": ""}, "unseen", words.silence["unseen"]),
+        ({**unseen, "praise": "elbow_out"}, "unseen", words.rest),
+    ):
+        made = attempt(**told)
+        assert shown_of(made).silence == sheet(made).report.attempts[0].silence == silence
+        article = html(made, language=language).partition("<article>")[2]
+        assert {one for one in every if one in article} == {said}
+
+
+def test_in_the_table_nothing_to_correct_is_said_only_of_what_was_fine_each_time() -> None:
+    fine = attempt("squat")
+    silent: dict[str, Any] = {"cue": "", "cue_certainty": 0.0}
+    unsure, unseen = attempt("squat", **silent), attempt("squat", **silent, score=None, score_sigma=None)
+    assert [one.silence for one in (fine, unsure, unseen)] == ["fine", "unsure", "unseen"]
+    for attempts, said in (((fine, fine), "fine"), ((fine, unseen), "unsure"), ((unsure,), "unsure"), ((unseen, unseen), "unseen")):
+        table = Reader(html(*attempts)).text.split("Score of each attempt")[0]
+        assert {one for one in WORDS["en"].silence.values() if one in table} == {WORDS["en"].silence[said]}  # type: ignore[index]
 
 
 def test_each_pupil_has_a_sheet_of_his_own_on_which_nobody_else_is() -> None:
@@ -190,12 +266,36 @@ def test_every_action_is_drawn_within_its_paper(action: str, handed: str) -> Non
     assert len(curves_of(told, shipped().teachings[action])) == 2
 
 
-def test_a_part_of_several_joints_is_as_bad_as_the_worst_and_grey_unless_most_were_judged() -> None:
-    grey, green, yellow, red = Colour.GREY, Colour.GREEN, Colour.YELLOW, Colour.RED
-    told: dict[tuple[Colour, ...], Colour] = {(green, green): green, (green, grey): grey, (red, grey): grey}
-    told |= {(green, red): red, (grey, grey): grey}
-    told |= {(green, green, yellow, grey, grey): yellow, (green, green, grey, grey, grey): grey}
-    assert {colours: together(np.array(colours, np.uint8)) for colours in told} == told
+def test_a_head_is_as_bad_as_the_worst_of_its_points_and_good_if_two_of_them_are() -> None:
+    """`tests/figure.test.ts` of the page reads the same table."""
+    for case in json.loads((GOLDEN / "head/levels.json").read_text()):
+        assert together(np.array(case["points"], np.uint8)) == case["head"], case
+
+
+def test_each_corner_of_the_trunk_is_as_its_own_joint_is_judged() -> None:
+    told = attempt()
+    grey = np.full(coco.COUNT, Colour.GREY, np.uint8)
+    grey[coco.INDEX["left_shoulder"]] = Colour.RED
+    (trunk,) = (part for part in parts_of(told.joints_m[0].astype(np.float64), grey) if isinstance(part, Trunk))
+    assert trunk.colours == (Colour.RED, Colour.GREY, Colour.GREY, Colour.GREY)
+    colours = told.colours.copy()
+    colours[:] = Colour.GREEN
+    colours[:, coco.INDEX["left_shoulder"]] = Colour.RED
+    painted = attempt(colours=colours)
+    # At each of the four keyframes the near half of an upper arm, and a quarter of the trunk.
+    assert drawn(painted, "off") == 8
+
+
+@pytest.mark.parametrize(("far", "class_"), [(Colour.RED, "off"), (Colour.GREY, "unsure")])
+def test_nothing_good_lies_on_top_of_a_shoulder_that_is_not(far: Colour, class_: str) -> None:
+    """Who leads with the right is seen from there, and his left shoulder lies behind the right one."""
+    colours = np.full_like(attempt("squat").colours, Colour.GREEN)
+    colours[:, coco.INDEX["left_shoulder"]] = far
+    tags = Reader(figures(attempt("squat", colours=colours, cue="", cue_certainty=0.0), WORDS["en"], "")).tags
+    trunks = [
+        str(attributes["class"]).split()[0] for tag, attributes in tags if tag == "polygon" and "edge" in str(attributes["class"])
+    ]
+    assert trunks == ["good", "good", class_] * 4
 
 
 @pytest.mark.parametrize("action", ACTIONS)
@@ -279,8 +379,9 @@ def test_paper_and_tablet_call_the_same_by_the_same_words(language: Language) ->
         *words.colours.values(),
         *words.phases,
         words.model,
-        words.fine,
-        words.unseen,
+        *words.silence.values(),
+        words.rest,
         words.next_time,
+        words.of_height,
     ]
     assert [one for one in (*said, words.score, words.action) if f"'{one}'" not in tablet] == []

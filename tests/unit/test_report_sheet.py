@@ -55,6 +55,15 @@ def test_what_was_not_seen_is_null_and_never_nought() -> None:
     assert (bend["severity"], bend["sigma"]) == (None, None)
 
 
+def test_what_an_empty_cue_means_is_in_the_file() -> None:
+    said = (
+        attempt(cue="no_knee_bend", cue_certainty=0.9, praise=""),
+        attempt(cue="", cue_certainty=0.0, score=80.0, score_sigma=4.0),
+    )
+    document = read(json_file.encode(sheet(*said).report))
+    assert [(one["cue"] is None, one["silence"]) for one in document["attempts"]] == [(False, None), (True, "unsure")]
+
+
 def test_an_attempt_without_a_score_has_none_in_the_summary_either() -> None:
     report = sheet(attempt(score=None, score_sigma=None)).report
     (action,) = report.pupils[0].actions
@@ -62,11 +71,17 @@ def test_an_attempt_without_a_score_has_none_in_the_summary_either() -> None:
 
 
 def test_more_attempts_make_the_mean_score_no_surer() -> None:
-    report = sheet(
-        attempt(score=80.0, score_sigma=4.0), attempt(score=60.0, score_sigma=6.0), attempt(score=None, score_sigma=None)
-    ).report
+    told = attempt(score=80.0, score_sigma=4.0), attempt(score=60.0, score_sigma=6.0), attempt(score=None, score_sigma=None)
+    report = sheet(*((one, "P07") for one in told)).report
     (action,) = report.pupils[0].actions
     assert (action.attempts, action.scored, action.score, action.score_sigma) == (3, 2, 70.0, 5.0)
+
+
+def test_the_scores_of_nobody_have_no_mean_since_they_are_of_several_pupils() -> None:
+    report = sheet(attempt(score=80.0, score_sigma=4.0), attempt(score=60.0, score_sigma=6.0)).report
+    (action,) = report.pupils[0].actions
+    assert (report.pupils[0].pupil, action.attempts, action.scored) == (None, 2, 2)
+    assert (action.score, action.score_sigma) == (None, None)
 
 
 @pytest.mark.parametrize("language", get_args(Language))
@@ -143,3 +158,8 @@ def test_an_attempt_that_began_before_the_lesson_has_a_negative_start() -> None:
     (one,) = sheet_of(facts, [Tried(attempt())], shipped().teachings, "en").report.attempts
     assert one.keyframes_s.start < 0 <= one.keyframes_s.exertion
     assert one.begun < BEGUN.isoformat()
+
+
+def test_codes_are_in_the_order_in_which_people_count() -> None:
+    report = sheet((attempt(), "12"), (attempt(), "B10"), (attempt(), "7"), (attempt(), "B2"), (attempt(), "-")).report
+    assert [one.pupil for one in report.pupils] == ["7", "12", "B2", "B10", None]

@@ -153,6 +153,15 @@ def given_up(process: str) -> Health:
     return Health("supervisor", 3, T0, "failed", (Trouble("given_up", f"{process} is given up"),), 0.0, 20.0, supervisor=supervisor)
 
 
+def test_that_there_was_a_server_before_this_one_is_known_from_the_supervisor_alone() -> None:
+    state = room()
+    assert not state.restarted
+    state.receive_health(given_up("edge-a"), T0)
+    assert not state.restarted
+    state.receive_health(given_up("tablet"), T0)
+    assert state.restarted
+
+
 def test_a_camera_that_was_given_up_is_told_from_one_that_will_return() -> None:
     state = room()
     state.receive_health(given_up("edge-a"), T0)

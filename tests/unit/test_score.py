@@ -80,3 +80,10 @@ def test_uncertain_severities_make_an_uncertain_score() -> None:
 def test_grey_joints_have_no_part_in_it() -> None:
     assert points(0.0, 0.0, deviation(5.0, Colour.GREY)) == pytest.approx(points(0.0, 0.0))
     assert points(0.0, 0.0, deviation(np.nan, Colour.GREY)) == pytest.approx(points(0.0, 0.0))
+
+
+def test_who_is_hidden_does_not_score_better() -> None:
+    """What nobody judged counted as if it had been done well: 22 points where everything that was seen was wrong."""
+    assert points(2.0, None) == pytest.approx(0)
+    assert points(0.35, None) == pytest.approx(points(0.35, 0.35))
+    assert points(0.0, None) == pytest.approx(100)

@@ -106,7 +106,7 @@ def test_the_site_of_the_shipped_lesson_names_its_cameras_and_where_they_stand()
     assert [camera.name for camera in site.cameras] == list(rig.names) == cameras()
     assert {(camera.kind, camera.path) for camera in site.cameras} == {("simulated", f"{FOLDER}/{SHIPPED}")}
     for camera, planned in zip(rig, rig_of(read_plan(SOURCE, "cam01")), strict=True):
-        assert np.array_equal(camera.projection, planned.projection)
+        assert np.allclose(camera.projection, planned.projection, rtol=1e-9), "but for how another processor rounds"
 
 
 def test_what_is_true_in_the_shipped_lesson_covers_all_of_it() -> None:

@@ -12,6 +12,7 @@ from models.motions.actions.library import ACTIONS
 from models.teaching.schema import Language, Teaching, Text, Vocabulary, decode_teaching
 from services.evaluation.measures.catalogue import FUNCTIONS
 from services.evaluation.signals.catalogue import CATALOGUE
+from tests.installed import ROOT
 
 LANGUAGES: tuple[Language, ...] = ("en", "zh", "de", "es")
 
@@ -72,3 +73,11 @@ def test_cues_are_short_and_say_what_to_do(action: str) -> None:
         for language in LANGUAGES:
             assert fault.cue.of(language)[-1] in ".。", fault.cue.of(language)
             assert fault.praise.of(language)[-1] in ".。", fault.praise.of(language)
+
+
+def test_the_example_of_the_guide_is_what_the_file_says() -> None:
+    guide = (ROOT / "docs" / "teaching.md").read_text(encoding="utf-8")
+    file = (files(models.teaching) / "actions" / "basketball_shot.toml").read_text(encoding="utf-8")
+    evidence = [line.strip() for line in guide.split("```")[1].splitlines() if line.startswith("  {")]
+    assert len(evidence) == 2
+    assert [line for line in evidence if line not in file] == []

@@ -50,6 +50,7 @@ def _beside() -> tuple[Description, Description]:
     return describe(next(seen)), describe(next(seen))
 
 
+@pytest.mark.motions
 def test_sizes_of_errors_are_found_again_from_the_median_to_the_tail() -> None:
     """Also of the swapped; where the swapped begin to count, near the 90th percentile, a ratio says nothing."""
     law, twin = _beside()
@@ -58,12 +59,14 @@ def test_sizes_of_errors_are_found_again_from_the_median_to_the_tail() -> None:
         assert ratio[[0, 1, 4]] == pytest.approx(np.ones(3), abs=0.12)
 
 
+@pytest.mark.motions
 def test_errors_remember_as_long_as_they_should() -> None:
     law, twin = _beside()
     assert law.memory.mean(axis=0)[0] == pytest.approx(LAW.memory, abs=0.05)
     assert twin.memory.mean(axis=0) == pytest.approx(law.memory.mean(axis=0), abs=0.05)
 
 
+@pytest.mark.motions
 def test_swaps_and_losses_are_as_frequent_as_they_should_be() -> None:
     law, twin = _beside()
     joints = [7, 8, 9, 10, 13, 14, 15, 16]
@@ -72,6 +75,7 @@ def test_swaps_and_losses_are_as_frequent_as_they_should_be() -> None:
     assert twin.spell == pytest.approx(law.spell, rel=0.3)
 
 
+@pytest.mark.motions
 def test_scores_know_of_errors_as_much_as_they_should() -> None:
     law, twin = _beside()
     assert twin.knowing == pytest.approx(law.knowing, abs=0.06)
@@ -84,6 +88,7 @@ def _cases(network: StandIn) -> list[Case]:
     return [Case(seen, lesson.rig.names, events, DELAY_S) for lesson, (seen, events) in zip(lessons, made, strict=True)]
 
 
+@pytest.mark.motions
 def test_fusion_errs_and_jitters_alike_on_the_twin_and_on_what_it_was_fitted_to() -> None:
     agreement = agree(_cases(LAW), lambda _: _twin())
     figures = agreement.figures()
@@ -92,6 +97,7 @@ def test_fusion_errs_and_jitters_alike_on_the_twin_and_on_what_it_was_fitted_to(
     assert agreement.actions == ("walk", "run")
 
 
+@pytest.mark.motions
 def test_a_twin_that_errs_twice_as_much_is_found_out() -> None:
     settings = replace(_twin().settings, gain=tuple(2.0 * gain for gain in _twin().settings.gain))
     figures = agree(_cases(LAW), lambda _: replace(_twin(), settings=settings)).figures()

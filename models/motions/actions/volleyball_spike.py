@@ -4,6 +4,7 @@ from typing import Final
 
 import numpy as np
 
+from models.errors import UserError
 from models.motions.actions.action import Action, Fault
 from models.motions.ballistics import GRAVITY_M_S2, airborne_s, push_off_s, take_off_m_s, thrown
 from models.motions.figure import Placed
@@ -11,10 +12,11 @@ from models.motions.flights import bouncing, held, spinning
 from models.motions.motion import RATE_HZ, Attempt, Motion, Thing
 from models.motions.natural import Natural
 from models.motions.performance import Performance
+from models.motions.ranges import beyond_deg
 from models.motions.subject import Subject
 from models.motions.things import VOLLEYBALL_RADIUS_M
 from models.motions.timeline import Timeline, snapped
-from models.motions.vocabulary import Arm, Body, Leg
+from models.motions.vocabulary import Arm, Body, Leg, Side
 from models.skeleton import smpl
 
 FAULTS: Final = (
@@ -38,10 +40,42 @@ _DIP: Final = 0.82
 _TIPTOE: Final = 1.08
 _LOWER: Final = 0.035
 """Heights of the pelvis: in the crouch, at the take-off, and by how much it lands lower than that."""
+BEYOND_DEG: Final = 1.5
+"""What is let pass of a shoulder beyond its range."""
+_FURTHEST_BACK: Final = 1.05
+"""Of the severity of `hit_behind`, what an arm shows of it."""
+_ROUNDS: Final = 12
+_LESS_BACK_A_DEG: Final = 0.08
+_LESS_UP_A_DEG: Final = 0.04
+"""Of the severity with which the hitting arm is back, and of the other arm's height, for each degree that a shoulder lacks."""
 
 
 def perform(performance: Performance, subject: Subject) -> Motion:
-    """See `models.motions.perform.perform`."""
+    """See `models.motions.perform.perform`. Nobody's arms go further back or up than his shoulders turn.
+
+    So of `hit_behind` the arm shows as much as its shoulder lets it, and from `_FURTHEST_BACK` on no more; only the trunk goes on
+    leaning. The attempt is called by the severity that was asked for, as all attempts are.
+
+    Raises:
+        UserError: no such performance was found.
+    """
+    hitting = performance.handed
+    other: Side = "left" if hitting == "right" else "right"
+    behind = min(performance.severity("hit_behind"), _FURTHEST_BACK)
+    less_back = less_up = back = up = 0.0
+    for _ in range(_ROUNDS):
+        motion = _spike(performance, subject, less_back, less_up)
+        back, up = (beyond_deg(motion, subject, "shoulder", 1, sides=(side,)) for side in (hitting, other))
+        if (back < BEYOND_DEG or less_back >= behind) and up < BEYOND_DEG:
+            return motion
+        less_back, less_up = less_back + _LESS_BACK_A_DEG * back, less_up + _LESS_UP_A_DEG * up
+    raise UserError(
+        f"volleyball_spike: the shoulders of somebody of {subject.age_years:.0f} would turn {max(back, up):.1f} degrees too far; "
+        "ask for less of hit_behind, or a smaller amplitude"
+    )
+
+
+def _spike(performance: Performance, subject: Subject, less_back: float, less_up: float) -> Motion:
     natural = Natural(performance)
     line = Timeline(subject, performance.handed, natural)
     forward, behind, late, single = (performance.severity(fault.name) for fault in FAULTS)
@@ -65,7 +99,7 @@ def perform(performance: Performance, subject: Subject) -> Motion:
     _approach(line, (start, first, second, third, bottom, off, on, settled, end), single)
     _flight(line, (off, top, on), single)
     _trunk(line, (first, second, bottom, off, hit, on, settled), forward, behind)
-    _arms(line, (first, second, bottom, off, hit, on, settled), (forward, behind))
+    _arms(line, (first, second, bottom, off, hit, on, settled), (forward, behind), less_back, less_up)
     line.stand(end, (_LANDING, 0.0))
     poses = line.poses(end + 0.15)
     placed = line.figure.place_local(poses.pelvis_m, poses.local)
@@ -116,20 +150,20 @@ def _trunk(line: Timeline, times: tuple[float, ...], forward: float, behind: flo
     line.key(settled, Body(tip=18, lean=12, facing=2, twist=4, gaze=(0, 0)))
 
 
-def _arms(line: Timeline, times: tuple[float, ...], faults: tuple[float, float]) -> None:
+def _arms(line: Timeline, times: tuple[float, ...], faults: tuple[float, float], less_back: float, less_up: float) -> None:
     first, second, bottom, off, hit, on, settled = times
-    forward, behind = faults[0], min(faults[1], 1.05)
+    forward, behind = faults[0], max(min(faults[1], _FURTHEST_BACK) - less_back, 0.0)
     quick = (on - off) / _AIRBORNE_S
     line.arms(first, Arm((0.35, 0.15, -1.0), (1.0, -0.3, 0.3), 35, 15, 0, 0, 15))
     line.arms(second - 0.06, Arm((-0.75, 0.28, -0.65), (1.0, -0.2, -0.2), 14, 20, 0, 0, 12))
     line.arms(second, Arm((-0.7, 0.28, -0.7), (1.0, -0.2, -0.2), 14, 20, 0, 0, 12))
     line.arms(bottom, Arm((0.05, 0.2, -1.0), (1.0, -0.3, 0.2), 38, 15, 0, 0, 12))
-    line.key(off + 0.06 * quick, left_arm=Arm((0.75, 0.5, 0.55), (0.1, -0.1, 1.0), 26, 10, 0, 0, 8))
+    line.key(off + 0.06 * quick, left_arm=Arm((0.75, 0.5, 0.55 - less_up), (0.1, -0.1, 1.0), 26, 10, 0, 0, 8))
     line.key(
         off + 0.06 * quick,
         right_arm=Arm((-0.1 + 0.9 * forward, 0.8 - 0.35 * forward, 0.1 - 0.2 * forward), (0.2, -0.2, 1.0), 88, 5, -10, 0, 8),
     )
-    line.key(hit - 0.11 * quick, left_arm=Arm((0.75, 0.35, 0.85), (0.1, -0.2, 1.0), 14, 15, 0, 0, 6))
+    line.key(hit - 0.11 * quick, left_arm=Arm((0.75, 0.35, 0.85 - less_up), (0.1, -0.2, 1.0), 14, 15, 0, 0, 6))
     line.key(hit + 0.02 * quick, left_arm=Arm((0.6, 0.3, -0.5), (0.8, -0.4, 0.6), 80, 10, 0, 0, 20))
     line.key(hit + 0.2 * quick, left_arm=Arm((0.1, 0.35, -0.95), (1.0, -0.4, 0.2), 60, 10, 0, 0, 20))
     cocked = (-0.42 + 1.4 * forward, 0.85 - 0.5 * forward, 0.3 - 0.2 * forward)
@@ -143,7 +177,11 @@ def _arms(line: Timeline, times: tuple[float, ...], faults: tuple[float, float])
     line.key(hit + 0.024 * quick, right_arm=Arm((0.72 - 0.5 * behind, 0.2, 0.9), (-0.15, -0.9, 0.4), 9, 14, 20, 0, 6))
     line.key(hit + 0.085 * quick, right_arm=Arm((0.95, 0.02, 0.25), (-0.05, -0.9, 0.7), 14, 30, 26, 0, 12))
     line.key(hit + 0.2 * quick, right_arm=Arm((0.55, -0.05, -0.8), (0.5, -0.6, 0.5), 30, 25, 8, 0, 18))
-    line.arms(on + 0.08, Arm((0.3, 0.4, -0.85), (1.0, -0.3, 0.2), 45, 15, 0, 0, 18))
+    landing = Arm((0.3, 0.4, -0.85), (1.0, -0.3, 0.2), 45, 15, 0, 0, 18)
+    line.key(on + 0.08, left_arm=landing)
+    # Who hits late ends the swing after he has landed. An arm that were lowered before would have to come up again, through the
+    # shoulder, within a few hundredths of a second.
+    line.key(max(on + 0.08, hit + 0.2 * quick), right_arm=landing)
     line.arms(settled, Arm((0.35, 0.35, -0.9), (1.0, -0.3, 0.2), 50, 15, 0, 0, 18))
 
 

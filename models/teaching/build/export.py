@@ -23,19 +23,18 @@ from models.body import LARGE
 from models.body.file import decode as decode_body
 from models.body.model import BodyModel
 from models.body.prior import SEXES
+from models.interpolation import between
 from models.motions.actions.library import ACTIONS
 from models.motions.motion import Motion
 from models.motions.perform import perform
 from models.motions.performance import Performance
 from models.motions.subject import Subject
 from models.skeleton import coco
-from models.teaching.standard import FRAME_S, Exemplar, Moments, Standard, decode, encode
+from models.teaching.standard import AFTER_S, BEFORE_S, FRAME_S, Exemplar, Standard, decode, encode, same_instants
 
 FOLDER: Final = Path(models.teaching.__file__).parent / "standards"
 _VERSION: Final = 1
 _ORIGIN: Final = "performed without a fault by the simulated pupil of 12 years (models.motions.actions)"
-_BEFORE_S, _AFTER_S = 0.2, 0.15
-"""A performance begins so long before its start and ends so long after its end."""
 _YEARS: Final = 12.0
 _EXEMPLARS: Final = (
     # years, tempo, amplitude, skill
@@ -129,8 +128,8 @@ def performed(how: Performance, years: float) -> Sampled:
 def _cut(motion: Motion, subject: Subject) -> Exemplar:
     """A performance, from shortly before its start to shortly after its end, in the canonical frame."""
     (attempt,) = motion.attempts
-    first_s = max(attempt.start_s - _BEFORE_S, 0.0)
-    count = int((min(attempt.end_s + _AFTER_S, motion.duration_s) - first_s) / FRAME_S + 1e-9) + 1
+    first_s = max(attempt.start_s - BEFORE_S, 0.0)
+    count = int((min(attempt.end_s + AFTER_S, motion.duration_s) - first_s) / FRAME_S + 1e-9) + 1
     times_s = first_s + FRAME_S * np.arange(count)
     joints = np.stack([subject.body.coco_m(motion.pose_at(min(float(t_s), motion.duration_s)))[: coco.COUNT] for t_s in times_s])
     joints -= _middle(joints)[0]
@@ -151,22 +150,13 @@ def _spread_m(standard: Sampled, good: Sequence[Sampled]) -> Float:
     squared = np.zeros(ours.shape[:2])
     for one in good:
         theirs = _centred(one.exemplar) * standard.stature_m / one.stature_m
-        frames = _mapped(times_s, standard.exemplar.moments_s, one.exemplar.moments_s) / FRAME_S
-        frames = np.clip(frames, 0, len(theirs) - 1)
-        below = np.minimum(frames.astype(np.int64), len(theirs) - 2)
-        share = (frames - below)[:, None, None]
-        squared += ((ours - (1 - share) * theirs[below] - share * theirs[below + 1]) ** 2).sum(axis=2)
+        frames = same_instants(times_s, standard.exemplar.moments_s, one.exemplar.moments_s) / FRAME_S
+        squared += ((ours - between(theirs, frames)) ** 2).sum(axis=2)
     return np.asarray(np.sqrt(squared / len(good)))
 
 
 def _centred(exemplar: Exemplar) -> Float:
     return exemplar.joints_m - _middle(exemplar.joints_m)[:, None]
-
-
-def _mapped(times_s: Float, ours: Moments, theirs: Moments) -> Float:
-    """The same instants of another performance: even between keyframes, at the same pace before the first and after the last."""
-    inside = np.interp(times_s, ours, theirs)
-    return np.asarray(inside + np.minimum(times_s - ours[0], 0.0) + np.maximum(times_s - ours[-1], 0.0))
 
 
 def _alike(there: Standard, fresh: Standard) -> bool:

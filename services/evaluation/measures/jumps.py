@@ -17,15 +17,18 @@ from services.evaluation.signals.series import Series
 
 FOOT_OF_STATURE: Final = 0.152
 """Length of a foot: Drillis and Contini, "Body Segment Parameters", New York University 1966."""
-_FOOT_SIGMA: Final = 0.028
-"""Of the stature: what feet differ in, and that a heel touches before the foot is flat; measured, 4 cm too short in the median."""
+_FOOT_SIGMA: Final = 0.008
+"""Of the stature: what feet differ in."""
 _FEET_UNSEEN: Final = "the cameras' network sees no heels and toes"
 _FAMILY: Final = "Jumps"
-_STANDS_S: Final = (0.08, 0.35)
+_STANDS_S: Final = (0.13, 0.35)
 """After a landing the feet are flat and still from when to when."""
-_FLAT_ABOVE_CM: Final = 1.5
+_FLAT_ABOVE_CM: Final = 0.5
+"""An ankle that has risen further goes to the front with it: the foot turns about its ball, or, landing, about its heel."""
 _LAST: Final = 3
 """So many frames of a foot that stands are averaged."""
+_SURELY_APART: Final = 2.0
+"""Standard deviations."""
 _TOP_SIGMA_S: Final = 0.006
 _SIDES: Final[tuple[SideAsked, SideAsked]] = ("left", "right")
 
@@ -95,16 +98,27 @@ def _travel(reading: Reading, attempt: FoundAttempt) -> Estimate:
         before.append((path, stood[-_LAST:]))
         after.append((path, lands[:_LAST]))
         seen &= bool(path.seen[[*stood[-_LAST:], *lands[:_LAST]]].all())
-    first, last = max(before, key=_mean), min(after, key=_mean)
-    value = _mean(last) - _mean(first)
-    variance = sum(_variance(*one) for one in (first, last))
-    return Estimate(value, math.sqrt(variance), seen)
+    (first, first_variance), (last, last_variance) = _outermost(before, 1.0), _outermost(after, -1.0)
+    return Estimate(last - first, math.sqrt(first_variance + last_variance), seen)
 
 
 def _frames(path: Series, height: Series, from_s: float, to_s: float, below_cm: float) -> Counts:
     within = (path.t_s >= from_s) & (path.t_s <= to_s) & np.isfinite(path.value)
     flat = within & (height.value <= below_cm)
     return np.flatnonzero(flat if flat.any() else within)
+
+
+def _outermost(feet: list[tuple[Series, Counts]], sign: float) -> tuple[float, float]:
+    """Place of the foot that is furthest along the way (`sign` 1) or furthest back (-1), and its variance.
+
+    Of two numbers that are the same but for their errors the larger one is too large on average. So feet that are not surely apart
+    stand side by side, in the middle of both.
+    """
+    one, other = (_mean(foot) for foot in feet)
+    variance = sum(_variance(*foot) for foot in feet)
+    apart = abs(one - other)
+    surely = apart > _SURELY_APART * math.sqrt(variance)
+    return (one + other) / 2 + (sign * apart / 2 if surely else 0.0), variance / 2
 
 
 def _mean(of: tuple[Series, Counts]) -> float:

@@ -42,7 +42,8 @@ def _mean(reading: Reading, attempt: FoundAttempt, which: int) -> Estimate:
     values = np.array([step[which] for step in steps])
     scatter = float(values.std(ddof=1)) / math.sqrt(len(values))
     # All steps share where network and model put hips and ankles.
-    shared = np.mean([np.nanmedian((reading.of(CATALOGUE["ankle_forward"], side).lasting ** 2).sum(axis=1)) for side in _SIDES])
+    series = [reading.of(CATALOGUE["ankle_forward"], side) for side in _SIDES]
+    shared = np.mean([np.nanmedian((one.lasting**2).sum(axis=1) + one.stature**2) for one in series])
     return Estimate(float(values.mean()), math.sqrt(scatter**2 + float(shared)))
 
 
@@ -59,7 +60,9 @@ def _steps(reading: Reading, attempt: FoundAttempt, side: SideAsked) -> Iterator
         if not stands[before + 1] or len(frames) < _FEWEST or not from_s <= ahead.t_s[frames].mean() <= to_s:
             continue
         around = np.arange(before, last + 2)
-        if not (np.isfinite(pace[around]).all() and ahead.seen[around].all()):
+        ends = [before, before + 1, last, last + 1]
+        seen = ahead.seen[around].all() and ankle.seen[ends].all() and hips.seen[ends].all()
+        if not (seen and np.isfinite(pace[around]).all()):
             continue
         lands, leaves = _crossing(pace, before), _crossing(pace, last)
         slope, level = np.polyfit(frames, ahead.value[frames], 1)

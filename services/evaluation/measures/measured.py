@@ -79,3 +79,4 @@ def unknown(why: str) -> Estimate:
 
 HIDDEN: Final = "the joints that it needs were not seen"
 OUTSIDE: Final = "the recording does not reach so far"
+BACKWARDS: Final = "in this attempt the stretch ends before it begins"

@@ -12,7 +12,7 @@ from models.arrays import Float
 from models.teaching.measure import Measure, Phase
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.measures.catalogue import FUNCTIONS
-from services.evaluation.measures.measured import HIDDEN, OUTSIDE, Measured
+from services.evaluation.measures.measured import BACKWARDS, HIDDEN, OUTSIDE, Measured
 from services.evaluation.signals.catalogue import CATALOGUE
 from services.evaluation.signals.reading import Reading
 from services.evaluation.signals.series import SEEN_SHARE, Series
@@ -20,7 +20,7 @@ from services.evaluation.signals.signal import Unit
 from services.evaluation.signals.stretch import Sample, sample, stretch, summed, top, top_sigma_s
 
 _ENDS: Final = 8
-"""So many frames are in a difference of two instants; more are in a mean."""
+"""Of a mean of so few frames all must have been seen."""
 
 
 def evaluate(measure: Measure, reading: Reading, attempt: FoundAttempt) -> Measured:
@@ -57,31 +57,48 @@ def name_of(measure: Measure) -> str:
 
 @dataclass(frozen=True)
 class _Value:
+    """What is taken of a stretch.
+
+    Attributes:
+        value: NaN if unknown.
+        weights: (T,) of the frames that it is a sum of; None if it is none.
+        sigma: a standard deviation beside what the weights have.
+        seen: whether what it is made of was.
+    """
+
     value: float
-    weights: Float | None
-    sigma: float = math.nan
+    weights: Float | None = None
+    sigma: float = 0.0
+    seen: bool = False
 
 
 def _reduced(measure: Measure, series: Series, attempt: FoundAttempt, unit: Unit) -> Measured:
     moments: dict[Phase, float] = {phase: attempt.moment_s(phase) for phase in set(measure.stretch[::2])}
+    name = name_of(measure)
+    first_s, last_s = _ends_s(measure, moments)
+    if last_s < first_s:
+        return Measured(name, math.nan, math.nan, unit, False, BACKWARDS)
+    series = series.about(first_s, last_s)
     samples = _samples(measure, series, moments)
     found = _taken(measure, series, samples)
-    name = name_of(measure)
     inside = _share_inside(series, samples)
     if not math.isfinite(found.value) or inside < SEEN_SHARE:
         return Measured(name, math.nan, math.nan, unit, False, HIDDEN if inside == 1 else OUTSIDE)
-    variance = found.sigma**2 if found.weights is None else series.variance(found.weights)
+    variance = found.sigma**2 + (0.0 if found.weights is None else series.variance(found.weights))
     for phase in moments:
         variance += _moment_variance(measure, series, moments, phase)
-    known = _seen(series, samples, found.weights) and math.isfinite(variance)
+    known = found.seen and _enough_seen(series, samples) and math.isfinite(variance)
     return Measured(name, found.value, math.sqrt(variance), unit, known, "" if known else HIDDEN)
 
 
-def _samples(measure: Measure, series: Series, moments: Mapping[Phase, float]) -> list[Sample]:
+def _ends_s(measure: Measure, moments: Mapping[Phase, float]) -> tuple[float, float]:
     first, early_s, last, late_s = measure.stretch
-    if measure.take == "at":
-        return [sample(series, moments[first] + early_s)]
-    return stretch(series, moments[first] + early_s, moments[last] + late_s)
+    return moments[first] + early_s, moments[last] + late_s
+
+
+def _samples(measure: Measure, series: Series, moments: Mapping[Phase, float]) -> list[Sample]:
+    first_s, last_s = _ends_s(measure, moments)
+    return [sample(series, first_s)] if measure.take == "at" else stretch(series, first_s, last_s)
 
 
 def _taken(measure: Measure, series: Series, samples: list[Sample]) -> _Value:
@@ -89,28 +106,29 @@ def _taken(measure: Measure, series: Series, samples: list[Sample]) -> _Value:
         return _mean(series, samples)
     if measure.take in {"at", "change"}:
         first, last = samples[0], samples[-1]
-        return _Value(first.value, first.weights) if measure.take == "at" else _difference(last, first)
+        weights = first.weights if measure.take == "at" else last.weights - first.weights
+        value = first.value if measure.take == "at" else last.value - first.value
+        return _Value(value, weights, seen=bool(series.seen[weights != 0].all()))
     extreme = top(series, samples, -1.0 if measure.take.endswith("min") else 1.0)
     other = top(series, samples, -1.0) if measure.take == "range" else extreme
     if extreme is None or other is None:
-        return _Value(math.nan, None)
+        return _Value(math.nan)
     if measure.take == "range":
-        return _difference(extreme, other)
+        hidden = math.hypot(extreme.hidden, other.hidden)
+        return _Value(extreme.value - other.value, extreme.weights - other.weights, hidden, extreme.seen and other.seen)
     if measure.take.startswith("time_"):
-        return _Value((extreme.place - samples[0].place) * series.frame_s, None, top_sigma_s(series, extreme))
-    return _Value(extreme.value, extreme.weights)
-
-
-def _difference(last: Sample, first: Sample) -> _Value:
-    return _Value(last.value - first.value, last.weights - first.weights)
+        return _Value((extreme.place - samples[0].place) * series.frame_s, None, top_sigma_s(series, extreme), extreme.timed)
+    return _Value(extreme.value, extreme.weights, extreme.hidden, extreme.seen)
 
 
 def _mean(series: Series, samples: list[Sample]) -> _Value:
     known = [one for one in samples if math.isfinite(one.value)]
     if not known:
-        return _Value(math.nan, None)
+        return _Value(math.nan)
     weights = np.mean([one.weights for one in known], axis=0)
-    return _Value(summed(series.value, weights), weights)
+    used = series.seen[weights != 0]
+    enough = np.count_nonzero(used) >= SEEN_SHARE * len(used) if len(used) > _ENDS else used.all()
+    return _Value(summed(series.value, weights), weights, seen=bool(enough))
 
 
 def _moment_variance(measure: Measure, series: Series, moments: Mapping[Phase, float], phase: Phase) -> float:
@@ -135,9 +153,6 @@ def _share_inside(series: Series, samples: list[Sample]) -> float:
     return max(1 - beside / (last - first), 0.0)
 
 
-def _seen(series: Series, samples: list[Sample], weights: Float | None) -> bool:
-    """Whether enough of the stretch was seen, and all frames that an extreme or an end is made of."""
-    frames = [min(max(round(one.place), 0), len(series) - 1) for one in samples]
-    used = series.seen[weights != 0] if weights is not None else np.ones(1, np.bool_)
-    many = np.count_nonzero(used) >= SEEN_SHARE * len(used) if len(used) > _ENDS else used.all()
-    return bool(many) and series.enough_seen(np.array(frames))
+def _enough_seen(series: Series, samples: list[Sample]) -> bool:
+    """Whether most of the stretch was."""
+    return series.enough_seen(np.array([min(max(round(one.place), 0), len(series) - 1) for one in samples]))

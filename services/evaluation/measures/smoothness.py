@@ -73,10 +73,7 @@ def _of(signal: str, by: Callable[[Float, float], float]) -> Callable[[Reading, 
 def _noises(series: Series, inside: Bool) -> Float:
     """(draws, frames) of a speed's error, alike in time as `Uncertainty` says: these measures are no sums, so no slopes help."""
     frames = np.flatnonzero(inside)
-    noise_alike, lasting_alike = series.model.alike(series.t_s[frames])
-    noise, lasting = series.noise[frames], series.lasting[frames]
-    covariance = noise @ noise.T * noise_alike + lasting @ lasting.T * lasting_alike
-    values, vectors = np.linalg.eigh(covariance)
+    values, vectors = np.linalg.eigh(series.covariance(frames))
     normal = np.random.default_rng(0).standard_normal((_DRAWS, len(frames)))
     return np.asarray(normal * np.sqrt(np.maximum(values, 0.0)) @ vectors.T)
 

@@ -23,7 +23,7 @@ def _hand_ahead(reading: Reading, attempt: FoundAttempt) -> Estimate:
     there, before, after = (sample(ahead, instant_s + shift_s) for shift_s in (0.0, -early_s, early_s))
     moved = (after.value - before.value) / 2
     sigma = math.sqrt(ahead.variance(there.weights) + moved**2)
-    return Estimate(there.value, sigma, bool(ahead.seen[there.weights != 0].all() and height.seen[highest.weights != 0].all()))
+    return Estimate(there.value, sigma, bool(ahead.seen[there.weights != 0].all() and highest.timed))
 
 
 FUNCTIONS = (

@@ -6,7 +6,6 @@ from typing import Final
 
 import numpy as np
 
-from models.arrays import Bool
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.measures.measured import HIDDEN, Estimate, Function, unknown
 from services.evaluation.signals.catalogue import CATALOGUE
@@ -44,29 +43,27 @@ def _index(signal: str) -> Callable[[Reading, FoundAttempt], Estimate]:
     def call(reading: Reading, attempt: FoundAttempt) -> Estimate:
         sides = [reading.of(CATALOGUE[signal], side) for side in ("lead", "other")]
         ranges = [_range(series, attempt) for series in sides]
-        if not all(math.isfinite(value) for value, _ in ranges):
+        if not all(math.isfinite(value) for value, _, _ in ranges):
             return unknown(HIDDEN)
-        (lead, lead_sigma), (other, other_sigma) = ranges
+        (lead, lead_sigma, lead_seen), (other, other_sigma, other_seen) = ranges
         whole = lead + other
         if whole < 2 * _LEAST_RANGE_DEG:
             return unknown(f"both sides move by less than {_LEAST_RANGE_DEG:g} degrees")
         sigma = 400 / whole**2 * math.hypot(other * lead_sigma, lead * other_sigma)
-        seen = all(series.enough_seen(_within(series, attempt)) for series in sides)
-        return Estimate(200 * (lead - other) / whole, sigma, seen)
+        return Estimate(200 * (lead - other) / whole, sigma, lead_seen and other_seen)
 
     return call
 
 
-def _range(series: Series, attempt: FoundAttempt) -> tuple[float, float]:
+def _range(series: Series, attempt: FoundAttempt) -> tuple[float, float, bool]:
+    """Of a signal over the attempt, with its standard deviation and whether it was seen."""
     samples = stretch(series, attempt.moments_s[0], attempt.moments_s[-1])
     highest, lowest = top(series, samples), top(series, samples, -1.0)
     if highest is None or lowest is None:
-        return math.nan, math.nan
-    return highest.value - lowest.value, math.sqrt(series.variance(highest.weights - lowest.weights))
-
-
-def _within(series: Series, attempt: FoundAttempt) -> Bool:
-    return np.asarray((series.t_s >= attempt.moments_s[0]) & (series.t_s <= attempt.moments_s[-1]))
+        return math.nan, math.nan, False
+    variance = series.variance(highest.weights - lowest.weights) + highest.hidden**2 + lowest.hidden**2
+    inside = (series.t_s >= attempt.moments_s[0]) & (series.t_s <= attempt.moments_s[-1])
+    return highest.value - lowest.value, math.sqrt(variance), highest.seen and lowest.seen and series.enough_seen(inside)
 
 
 FUNCTIONS = (

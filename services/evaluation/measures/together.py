@@ -22,7 +22,7 @@ def _arms_after_legs(reading: Reading, attempt: FoundAttempt) -> Estimate:
             return unknown(HIDDEN)
         moments.append(highest.place * series.frame_s)
         variance += top_sigma_s(series, highest) ** 2
-        seen &= bool(series.seen[highest.weights != 0].all())
+        seen &= highest.timed
     return Estimate(moments[0] - moments[1], math.sqrt(variance), seen)
 
 

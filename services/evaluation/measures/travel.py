@@ -36,8 +36,9 @@ def _rises_and_falls(reading: Reading, attempt: FoundAttempt) -> Estimate:
     highest, lowest = top(series, samples), top(series, samples, -1.0)
     if highest is None or lowest is None:
         return unknown(HIDDEN)
-    variance = series.variance(highest.weights - lowest.weights)
-    return Estimate(highest.value - lowest.value, math.sqrt(variance), _seen(series, attempt))
+    variance = series.variance(highest.weights - lowest.weights) + highest.hidden**2 + lowest.hidden**2
+    seen = highest.seen and lowest.seen and _seen(series, attempt)
+    return Estimate(highest.value - lowest.value, math.sqrt(variance), seen)
 
 
 def _rise(reading: Reading, attempt: FoundAttempt) -> Estimate:
@@ -46,8 +47,10 @@ def _rise(reading: Reading, attempt: FoundAttempt) -> Estimate:
     highest = top(series, samples)
     if highest is None or not math.isfinite(samples[0].value):
         return unknown(HIDDEN)
-    variance = series.variance(highest.weights - samples[0].weights)
-    return Estimate(highest.value - samples[0].value, math.sqrt(variance), _seen(series, attempt))
+    first = samples[0]
+    variance = series.variance(highest.weights - first.weights) + highest.hidden**2
+    seen = highest.seen and bool(series.seen[first.weights != 0].all()) and _seen(series, attempt)
+    return Estimate(highest.value - first.value, math.sqrt(variance), seen)
 
 
 def _seen(series: Series, attempt: FoundAttempt) -> bool:
@@ -64,7 +67,7 @@ def _hips_then_wrist(reading: Reading, attempt: FoundAttempt) -> Estimate:
             return unknown(HIDDEN)
         times.append(at.place * series.frame_s)
         variance += top_sigma_s(series, at) ** 2
-        seen &= _seen(series, attempt)
+        seen &= at.timed and _seen(series, attempt)
     return Estimate(times[1] - times[0], math.sqrt(variance), seen)
 
 

@@ -11,6 +11,8 @@ from models.messages.feedback import Colour
 from models.skeleton import coco
 
 _HEAD: Final = range(5)
+_HEAD_QUORUM: Final = 2
+"""So many of its points show that a head is as it should be."""
 _LEFT_SHOULDER, _RIGHT_SHOULDER, _LEFT_HIP, _RIGHT_HIP = coco.TRUNK
 _WIDTHS: Final = {"thigh": 0.125, "shank": 0.095, "upper_arm": 0.085, "forearm": 0.068}
 """Of limbs, as shares of the length from shoulder to ankle."""
@@ -50,11 +52,11 @@ class Limb:
 class Trunk:
     """Attributes:
     corners_m: (4, 3) left and right shoulder, right and left hip.
-    colours: of the shoulders, and of the hips.
+    colours: of each of them.
     """
 
     corners_m: Float
-    colours: tuple[Colour, Colour]
+    colours: tuple[Colour, Colour, Colour, Colour]
 
     @property
     def middle_m(self) -> Float:
@@ -91,9 +93,10 @@ def parts_of(joints_m: Float, colours: UInt8) -> Iterator[Part]:
                 Capsule(np.stack((joints_m[joint], middle)), width, Colour(int(colours[joint]))) for joint in (near, far)
             )
             yield Limb((first, second))
-    corners = (_LEFT_SHOULDER, _RIGHT_SHOULDER, _RIGHT_HIP, _LEFT_HIP)
-    if known[list(corners)].all():
-        yield Trunk(joints_m[list(corners)], (together(colours[list(corners[:2])]), together(colours[list(corners[2:])])))
+    corners = [_LEFT_SHOULDER, _RIGHT_SHOULDER, _RIGHT_HIP, _LEFT_HIP]
+    if known[corners].all():
+        left, right, right_hip, left_hip = (Colour(int(colour)) for colour in colours[corners])
+        yield Trunk(joints_m[corners], (left, right, right_hip, left_hip))
     face = [joint for joint in _HEAD if known[joint]]
     if face:
         ears = [joint for joint in face if coco.NAMES[joint].endswith("ear")]
@@ -103,6 +106,7 @@ def parts_of(joints_m: Float, colours: UInt8) -> Iterator[Part]:
 
 
 def together(colours: UInt8) -> Colour:
-    """Of a part that several joints make: the worst of them; grey unless more than half of them were judged."""
+    """Of a head, by its points: the worst of them; none if it is good and too few were judged. The same on the tablet's page."""
     judged = colours[colours != Colour.GREY]
-    return Colour(int(judged.max())) if 2 * len(judged) > len(colours) else Colour.GREY
+    worst = Colour(int(judged.max(initial=Colour.GREY)))
+    return worst if worst > Colour.GREEN or len(judged) >= _HEAD_QUORUM else Colour.GREY

@@ -1,7 +1,7 @@
-"""A report as CSV, for the gradebook: a line an attempt, RFC 4180, UTF-8 with a byte order mark.
+"""A report as CSV, for the gradebook: a line an attempt, cells quoted as RFC 4180 has it, UTF-8 with a byte order mark.
 
-A spreadsheet takes a text that begins like a formula for one, and runs it ("CSV injection", OWASP): such texts get an apostrophe in
-front, which spreadsheets know as the sign of a text. Numbers stay numbers. What is not known is an empty cell.
+Where people write a decimal comma, spreadsheets expect it in the file, and a semicolon in the place of RFC 4180's comma. Numbers
+are numbers, and texts stay texts (`services.evaluation.report.spreadsheet`). What is not known is an empty cell.
 """
 
 import csv
@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from typing import Final
 
 from services.evaluation.report.document import Attempt, Measure, Report
+from services.evaluation.report.spreadsheet import kept
+from services.evaluation.report.words import WORDS
 
 _BOM: Final = "\ufeff"
-_FORMULA: Final = tuple("=+-@\uff1d\uff0b\uff0d\uff20")
-"""Formulas begin with one of these, narrow or wide."""
 COLUMNS: Final = (
     *(
         "lesson",
@@ -25,11 +25,12 @@ COLUMNS: Final = (
         "pupil",
         "action",
         "action_title",
+        "by",
         "handed",
         "duration_s",
         "duration_s_sigma",
     ),
-    *("score", "score_sigma", "praise", "cue", "cue_certainty"),
+    *("score", "score_sigma", "praise", "cue", "cue_certainty", "silence", "source"),
 )
 """What every report has; after them come three for each measure that was shown, in the lesson's order."""
 _SQRT_2: Final = 2**0.5
@@ -37,61 +38,61 @@ _SQRT_2: Final = 2**0.5
 
 def encode(report: Report) -> bytes:
     """The file. Of the measures those that the tablet shows; JSON has all."""
-    shown = dict.fromkeys(
-        (measure.name, measure.unit) for attempt in report.attempts for measure in attempt.measures if measure.shown
-    )
+    shown = dict.fromkeys(_column(attempt, one) for attempt in report.attempts for one in attempt.measures if one.shown)
     head = list(COLUMNS)
-    for name, unit in shown:
-        head += [f"{name}_{unit}", f"{name}_{unit}_sigma", f"{name}_{unit}_verdict"]
+    for column in shown:
+        head += [column, f"{column}_sigma", f"{column}_verdict"]
+    comma = WORDS[report.language].comma
     file = io.StringIO(newline="")
-    writer = csv.writer(file, lineterminator="\r\n")
-    writer.writerow([_cell(name) for name in head])
+    writer = csv.writer(file, delimiter=";" if comma == "," else ",", lineterminator="\r\n")
+    writer.writerow([kept(name) for name in head])
     for attempt in report.attempts:
-        writer.writerow([*_about(report, attempt), *_measured(attempt, list(shown))])
+        writer.writerow([*_about(report, attempt, comma), *_measured(attempt, list(shown), comma)])
     return (_BOM + file.getvalue()).encode()
 
 
-def _about(report: Report, attempt: Attempt) -> list[str]:
+def _column(attempt: Attempt, measure: Measure) -> str:
+    """With the action: what another one calls the same is measured otherwise."""
+    return f"{attempt.action}_{measure.name}_{measure.unit}"
+
+
+def _about(report: Report, attempt: Attempt, comma: str) -> list[str]:
     times, begun = attempt.keyframes_s, dt.datetime.fromisoformat(attempt.begun)
     return [
-        _cell(report.lesson.name),
-        _cell(report.lesson.title),
+        kept(report.lesson.name),
+        kept(report.lesson.title),
         f"{begun:%Y-%m-%d}",
         f"{begun:%H:%M:%S}",
         str(attempt.number),
-        _cell(attempt.pupil or ""),
-        _cell(attempt.action),
-        _cell(attempt.title or ""),
-        _cell(attempt.handed),
-        _number(times.end - times.start),
-        _number(times.sigma * _SQRT_2),
-        _number(attempt.score),
-        _number(attempt.score_sigma),
-        _cell("" if attempt.praise is None else attempt.praise.text or attempt.praise.point),
-        _cell("" if attempt.cue is None else attempt.cue.text or attempt.cue.fault),
-        _number(None if attempt.cue is None else attempt.cue.certainty),
+        kept(attempt.pupil or ""),
+        kept(attempt.action),
+        kept(attempt.title or ""),
+        kept(attempt.by),
+        kept(attempt.handed),
+        _number(times.end - times.start, comma),
+        _number(times.sigma * _SQRT_2, comma),
+        _number(attempt.score, comma),
+        _number(attempt.score_sigma, comma),
+        kept("" if attempt.praise is None else attempt.praise.text or attempt.praise.point),
+        kept("" if attempt.cue is None else attempt.cue.text or attempt.cue.fault),
+        _number(None if attempt.cue is None else attempt.cue.certainty, comma),
+        kept(attempt.silence or ""),
+        kept(report.source),
     ]
 
 
-def _measured(attempt: Attempt, names: Sequence[tuple[str, str]]) -> list[str]:
-    measures = {(measure.name, measure.unit): measure for measure in attempt.measures if measure.shown}
-    return [cell for name in names for cell in _cells(measures.get(name))]
+def _measured(attempt: Attempt, columns: Sequence[str], comma: str) -> list[str]:
+    measures = {_column(attempt, measure): measure for measure in attempt.measures if measure.shown}
+    return [cell for column in columns for cell in _cells(measures.get(column), comma)]
 
 
-def _cells(measure: Measure | None) -> list[str]:
+def _cells(measure: Measure | None, comma: str) -> list[str]:
     if measure is None:
         return ["", "", ""]
-    return [_number(measure.value), _number(measure.sigma), "" if measure.verdict == "unknown" else _cell(measure.verdict)]
+    verdict = "" if measure.verdict == "unknown" else kept(measure.verdict)
+    return [_number(measure.value, comma), _number(measure.sigma, comma), verdict]
 
 
-def _number(value: float | None) -> str:
-    """With a point, and without what no measure tells."""
-    return "" if value is None else f"{round(value, 3) + 0.0:.3f}".rstrip("0").rstrip(".")
-
-
-def _cell(text: str) -> str:
-    """A text that no spreadsheet computes."""
-    # What is not printed may be skipped before a formula, and a line's end within a cell breaks many a reader.
-    line = " ".join(text.split())
-    plain = "".join(character for character in line if character.isprintable())
-    return f"'{plain}" if plain.lstrip().startswith(_FORMULA) else plain
+def _number(value: float | None, comma: str) -> str:
+    """Without what no measure tells."""
+    return "" if value is None else f"{round(value, 3) + 0.0:.3f}".rstrip("0").rstrip(".").replace(".", comma)

@@ -8,7 +8,7 @@ from typing import Annotated, Final, Literal
 import msgspec
 from msgspec import Meta
 
-from models.messages.feedback import Verdict
+from models.messages.feedback import Silence, Verdict
 from models.motions.motion import Handed
 from models.teaching.schema import Language
 
@@ -85,6 +85,13 @@ class Attempt(Table, frozen=True, kw_only=True):
     score_sigma: Annotated[float | None, Meta(description="one standard deviation of it; null together with it")]
     praise: Annotated[Praise | None, Meta(description="what was good; null for nothing that is sure")]
     cue: Annotated[Cue | None, Meta(description="what to correct; null for nothing that is sure")]
+    silence: Annotated[
+        Silence | None,
+        Meta(
+            description="what it means that there is no cue: fine, nothing was wrong; unsure, nothing that is sure enough to "
+            "correct (or the lesson is older than this field); unseen, too little was seen but for what is praised; null with a cue"
+        ),
+    ]
     measures: Annotated[tuple[Measure, ...], Meta(description="those that the tablet shows first")]
     judgements: Annotated[tuple[Judgement, ...], Meta(description="one a fault of the action")]
 
@@ -96,7 +103,7 @@ class ActionSummary(Table, frozen=True, kw_only=True):
     title: Annotated[str | None, Meta(description="in the report's language; null if it is not taught any more")]
     attempts: Annotated[int, Meta(description="how many")]
     scored: Annotated[int, Meta(description="how many of them have a score")]
-    score: Annotated[float | None, Meta(description="mean of these scores; null if there is none")]
+    score: Annotated[float | None, Meta(description="mean of these scores; null if there is none, or if nobody was named")]
     score_sigma: Annotated[
         float | None, Meta(description="mean of their sigmas: one pupil's errors are alike, so more attempts make it no smaller")
     ]
@@ -120,7 +127,7 @@ class Lesson(Table, frozen=True, kw_only=True):
 
     name: Annotated[str, Meta(description="as 'kinebox lessons' lists it")]
     title: Annotated[str, Meta(description="what people call it; may be empty")]
-    begun: Annotated[str, Meta(description="day and time, ISO 8601")]
+    begun: Annotated[str, Meta(description="day and time, with the time zone of the machine that reports, ISO 8601")]
     seconds: Annotated[float, Meta(description="its length")]
     kinebox: Annotated[str, Meta(description="version of KineBox that recorded it")]
 

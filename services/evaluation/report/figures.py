@@ -37,6 +37,8 @@ _USUAL_SIZE_M: Final = 1.1
 """From shoulder to ankle, of somebody whose limbs were not seen."""
 PAINT: Final = {Colour.GREEN: "good", Colour.YELLOW: "near", Colour.RED: "off", Colour.GREY: "unsure"}
 """Classes of the style sheet."""
+_ON_TOP: Final = (Colour.GREEN, Colour.GREY, Colour.YELLOW, Colour.RED)
+"""Of two, one behind the other, the later one is seen: paper cannot be turned, and hides nothing that was wrong or not sure."""
 
 PATTERNS: Final = svg.element(
     "defs",
@@ -184,10 +186,8 @@ def _painted(part: Limb | Trunk | Head, pen: _Pen) -> Iterator[str]:
         for half in part.halves:
             yield svg.path(_outline(half, pen), f"{PAINT[half.colour]} edge")
     elif isinstance(part, Trunk):
-        upper, lower = _trunk_halves(part, pen)
-        wide = pen.wide(TRUNK_WIDTH)
-        for corners, colour in ((lower, part.colours[1]), (upper, part.colours[0])):
-            hull = _rounded(corners, wide / 2)
+        for corners, middle, colour in _trunk_pieces(part):
+            hull = _rounded([pen.at(one) for one in corners], pen.wide(TRUNK_WIDTH) / 2, [pen.at(one) for one in middle])
             yield svg.path(hull, f"{PAINT[colour]} edge", closed=True)
     else:
         yield from _head(part, pen, PAINT[part.colour])
@@ -230,18 +230,30 @@ def _outline(half: Capsule, pen: _Pen) -> list[Point]:
     return [(float(x), float(y)) for x, y in corners]
 
 
-def _trunk_halves(trunk: Trunk, pen: _Pen) -> tuple[list[Point], list[Point]]:
-    """Shoulders and hips, each down or up to the waist."""
+def _trunk_pieces(trunk: Trunk) -> Iterator[tuple[list[Float], list[Float], Colour]]:
+    """Corners of hips, then of shoulders, each to the waist. Where left and right differ, one after the other, the worse on top,
+    each with where it meets the other in the middle."""
     left, right, right_hip, left_hip = trunk.corners_m
-    waist = [(right + right_hip) / 2, (left + left_hip) / 2]
-    return [pen.at(one) for one in (left, right, *waist)], [pen.at(one) for one in (*reversed(waist), right_hip, left_hip)]
+    waist, sides = (left + right + right_hip + left_hip) / 4, ((left + left_hip) / 2, (right + right_hip) / 2)
+    of_left, of_right, of_right_hip, of_left_hip = trunk.colours
+    for (first, second), colours in (((left_hip, right_hip), (of_left_hip, of_right_hip)), ((left, right), (of_left, of_right))):
+        if colours[0] == colours[1]:
+            yield [first, second, *sides], [], colours[0]
+            continue
+        middle = [(first + second) / 2, waist]
+        pieces = [([corner, side], middle, own) for corner, side, own in zip((first, second), sides, colours, strict=True)]
+        yield from sorted(pieces, key=lambda piece: _ON_TOP.index(piece[2]))
 
 
-def _rounded(corners: Sequence[Point], radius: float) -> list[Point]:
-    """The hull of circles about the corners."""
+def _rounded(corners: Sequence[Point], radius: float, middle: Sequence[Point] = ()) -> list[Point]:
+    """The hull of circles about the corners, and of those halves of circles about `middle` that look towards the first corner."""
     turns = np.linspace(0, 2 * np.pi, 4 * _ARC, endpoint=False)
     circle = radius * np.stack((np.cos(turns), np.sin(turns)), axis=1)
-    return _hull((np.array(corners)[:, None] + circle).reshape(-1, 2))
+    points = (np.array(corners)[:, None] + circle).reshape(-1, 2)
+    if middle:
+        half = circle[circle @ (np.array(corners[0]) - middle[0]) >= 0]
+        points = np.concatenate((points, (np.array(middle)[:, None] + half).reshape(-1, 2)))
+    return _hull(points)
 
 
 def _hull(points: Float) -> list[Point]:

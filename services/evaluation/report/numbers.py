@@ -1,11 +1,15 @@
 """Numbers and times as people of a language write them; the same digits as on the tablet's page."""
 
 import html
+from decimal import ROUND_HALF_UP, Context, Decimal
 from typing import Final
 
 from services.evaluation.report.words import Words
 
 _UNITS: Final = {"deg": "°", "cm": " cm", "pct": " %", "m_s": " m/s", "s": " s", "deg_s": " °/s"}
+_OF_HEIGHT: Final = "pct"
+_EXACT: Final = Context(prec=400, rounding=ROUND_HALF_UP)
+"""Every float has room in it."""
 _DIGITS: Final = ((0.95, 0), (0.095, 1))
 """Sigmas from here on, and how many digits after the point then say something; two below."""
 
@@ -15,15 +19,20 @@ def unit(name: str) -> str:
     return _UNITS.get(name, f" {name}" if name else "")
 
 
+def whole_unit(name: str, words: Words) -> str:
+    """The same with what it is of, where it does not say so itself."""
+    return f"{unit(name)} {words.of_height}" if name == _OF_HEIGHT else unit(name)
+
+
 def digits_of(sigma: float) -> int:
     """After the point: one of the uncertainty, at most two."""
     return next((digits for least, digits in _DIGITS if sigma >= least), 2)
 
 
 def number(value: float, digits: int, words: Words) -> str:
-    """With the language's decimal sign and a true minus; never "-0"."""
-    text = f"{round(value, digits) + 0.0:.{digits}f}"
-    return text.replace("-", "\u2212").replace(".", words.comma)
+    """With the language's decimal sign and a true minus; halves away from nought, as browsers have it; never "-0"."""
+    rounded = Decimal(float(value)).quantize(Decimal(1).scaleb(-digits), context=_EXACT)
+    return _written(f"{abs(rounded) if rounded.is_zero() else rounded:f}", words)
 
 
 def estimate(value: float | None, sigma: float | None, name: str, words: Words) -> str:
@@ -35,13 +44,18 @@ def estimate(value: float | None, sigma: float | None, name: str, words: Words) 
 
 
 def between(low: float | None, high: float | None, name: str, words: Words) -> str:
-    """ "45 … 90°", or "≥ 45°"; empty without a bound."""
-    ends = [None if bound is None else number(bound, 0 if bound == round(bound) else 1, words) for bound in (low, high)]
+    """ "45 … 90°", or "≥ 45°"; empty without a bound. Bounds are what somebody has written, and stand here as they are."""
+    ends = [None if bound is None else _written(f"{bound + 0.0:.6g}", words) for bound in (low, high)]
+    behind = whole_unit(name, words)
     if ends[0] is not None and ends[1] is not None:
-        return f"{ends[0]}\u2009…\u2009{ends[1]}{unit(name)}"
+        return f"{ends[0]}\u2009…\u2009{ends[1]}{behind}"
     if ends[0] is not None:
-        return f"≥\u00a0{ends[0]}{unit(name)}"
-    return "" if ends[1] is None else f"≤\u00a0{ends[1]}{unit(name)}"
+        return f"≥\u00a0{ends[0]}{behind}"
+    return "" if ends[1] is None else f"≤\u00a0{ends[1]}{behind}"
+
+
+def _written(text: str, words: Words) -> str:
+    return text.replace("-", "\u2212").replace(".", words.comma)
 
 
 def clock(seconds: float) -> str:

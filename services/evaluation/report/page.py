@@ -4,7 +4,7 @@ import datetime as dt
 from collections.abc import Iterator
 from typing import Final
 
-from models.messages.feedback import Colour, Verdict
+from models.messages.feedback import Colour, Silence, Verdict
 from services.evaluation.report import curve_chart, scores
 from services.evaluation.report.curve import curves_of
 from services.evaluation.report.document import ActionSummary, Attempt, Measure, PupilSummary, Report
@@ -65,10 +65,13 @@ def _lesson(report: Report, summary: PupilSummary, words: Words) -> str:
 
 
 def _summary(summary: PupilSummary, attempts: list[Attempt], words: Words) -> str:
-    rows = "".join(_row(place, action, words) for place, action in enumerate(summary.actions))
+    named = summary.pupil is not None
+    tried = {action.action: [one for one in attempts if one.action == action.action] for action in summary.actions}
+    rows = "".join(_row(place, action, tried[action.action], words, named=named) for place, action in enumerate(summary.actions))
+    mean = f'<th class="number">{escaped(words.mean_score)}</th>' if named else ""
     head = (
         f'<tr><th>{escaped(words.action)}</th><th class="number">{escaped(words.attempts)}</th>'
-        f'<th class="number">{escaped(words.mean_score)}</th><th>{escaped(words.most_often)}</th></tr>'
+        f"{mean}<th>{escaped(words.most_often)}</th></tr>"
     )
     drawing = scores.chart(summary, attempts, words.scores)
     return (
@@ -77,23 +80,30 @@ def _summary(summary: PupilSummary, attempts: list[Attempt], words: Words) -> st
     )
 
 
-def _row(place: int, action: ActionSummary, words: Words) -> str:
-    mean = _points(action.score, action.score_sigma, words)
+def _row(place: int, action: ActionSummary, tried: list[Attempt], words: Words, *, named: bool) -> str:
+    """Without a mean score where nobody was named: it would be taken for somebody's."""
+    mean = f'<td class="number">{_points(action.score, action.score_sigma, words)}</td>' if named else ""
     if action.cue is None:
-        cue = "\u2013"
+        cue = words.silence[_together(tried)]
     else:
         often = words.of.format(count=action.cue_count, all=action.attempts).replace(" ", "\u00a0")
         cue = f"{action.cue_text or _plain(action.cue)} ({often})"
     return (
         f'<tr><td><span class="key">{scores.letter(place)}</span>{escaped(action.title or _plain(action.action))}</td>'
-        f'<td class="number">{action.attempts}</td><td class="number">{mean}</td><td>{escaped(cue)}</td></tr>'
+        f'<td class="number">{action.attempts}</td>{mean}<td>{escaped(cue)}</td></tr>'
     )
+
+
+def _together(tried: list[Attempt]) -> Silence:
+    """What it means that none of these attempts was corrected: only what is said of all is said of them together."""
+    said = {attempt.silence for attempt in tried}
+    return "fine" if said == {"fine"} else "unseen" if said == {"unseen"} else "unsure"
 
 
 def _attempt(sheet: Sheet, attempt: Attempt, tried: Tried, words: Words) -> str:
     title = attempt.title or _plain(attempt.action)
     begun = dt.datetime.fromisoformat(attempt.begun)
-    who = [] if attempt.pupil is None else [attempt.pupil]
+    who = [] if attempt.pupil is None else [f"{words.pupil} {attempt.pupil}"]
     facts = " · ".join([words.attempt.format(number=attempt.number), *who, f"{begun:%H:%M:%S}", words.handed[attempt.handed]])
     drawn = figures(tried.feedback, words, f"{title}: {', '.join(words.phases)}")
     return (
@@ -112,20 +122,31 @@ def _score(attempt: Attempt, words: Words) -> str:
 
 
 def _said(attempt: Attempt, words: Words) -> str:
-    good = ""
-    if attempt.praise is not None:
-        text = attempt.praise.text or _plain(attempt.praise.point)
-        good = f'<p class="praise"><b>✓ {escaped(words.good)}</b><span>{escaped(text)}</span></p>'
+    return f'<div class="said">{_good(attempt, words)}{_next(attempt, words)}</div>'
+
+
+def _good(attempt: Attempt, words: Words) -> str:
+    if attempt.praise is None:
+        return ""
+    text = attempt.praise.text or _plain(attempt.praise.point)
+    return f'<p class="praise"><b>✓ {escaped(words.good)}</b><span>{escaped(text)}</span></p>'
+
+
+def _next(attempt: Attempt, words: Words) -> str:
+    """What to correct, or what it means that there is nothing."""
     if attempt.cue is not None:
         text = attempt.cue.text or _plain(attempt.cue.fault)
-        return f'<div class="said">{good}<p class="next"><b>→ {escaped(words.next_time)}</b><span>{escaped(text)}</span></p></div>'
-    silence = words.unseen if attempt.score is None else words.fine
-    return f'<div class="said">{good}<p class="next silent"><span>{escaped(silence)}</span></p></div>'
+        return f'<p class="next"><b>→ {escaped(words.next_time)}</b><span>{escaped(text)}</span></p>'
+    silence = attempt.silence or "unsure"
+    text = words.rest if silence == "unseen" and attempt.praise is not None else words.silence[silence]
+    return f'<p class="next silent"><span>{escaped(text)}</span></p>'
 
 
 def _measure(measure: Measure, words: Words) -> str:
     known = measure.value is not None
-    mark = f"{_MARKS[measure.verdict]} {words.verdicts[measure.verdict]}" if known else ""
+    # The number may be known and still say nothing for sure.
+    said = words.colours[Colour.GREY] if measure.verdict == "unknown" else words.verdicts[measure.verdict]
+    mark = f"{_MARKS[measure.verdict]} {said}" if known else ""
     value = _estimate(measure.value, measure.sigma, measure.unit, words)
     wanted = between(measure.low, measure.high, measure.unit, words)
     lines = (

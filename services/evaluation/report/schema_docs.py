@@ -16,7 +16,7 @@ _OPENING: Final = """\
     kinebox report LESSON --out report.html                       # the page to print
     kinebox report LESSON --format csv --out 7b.csv               # for the gradebook
     kinebox report LESSON --format json                           # for programs; without --out it goes to stdout
-    kinebox report LESSON --language de --pupil P07
+    kinebox report LESSON --language de --pupil 7
 
 LESSON is a name from `kinebox lessons`, or any file. A report says what the tablet said on the day, attempt by attempt, from the
 lesson's file. A lesson that holds no attempts, because it is older than the evaluation or the evaluation was not at work, is
@@ -25,7 +25,8 @@ changed what it teaches. What was chosen on the tablet is not known then: attemp
 pupils do.
 
 Titles and texts come from the teaching files ([teaching](teaching.md)) of the site that the lesson's file names, or of `--site`;
-the language from there, too, unless `--language` says `en`, `zh`, `de` or `es`.
+the language from there, too, unless `--language` says `en`, `zh`, `de` or `es`. Days and times are in the time zone of the
+machine that reports; a lesson's file does not hold that of the gym.
 
 Exit code 2 with one line if the lesson cannot be read, holds no motion or no attempt, if there is no such format, language or
 pupil, or if the file is there already or cannot be written. Then nothing is written: a report is there as a whole or not at all.
@@ -33,9 +34,9 @@ pupil, or if the file is there already or cannot be written. Then nothing is wri
 **Nothing is made up.** Every number stands with its sigma, one standard deviation. What was not seen well enough is `null` in
 JSON, an empty cell in CSV, grey, hollow or "not known" on paper, and never 0.
 
-**Pupils.** Attempts carry the code of a pupil, as far as one was named; reports are grouped by it and know no names. On the page
-each pupil begins a new sheet, on which nobody else is. Until pupils can be chosen on the tablet, attempts are nobody's: `null` in
-JSON, empty in CSV, `--pupil -` on the command line.
+**Pupils.** Attempts carry the code of who was up when they began, as it was chosen on the tablet and corrected since
+([pupils](pupils.md)); reports are grouped by it and know no names. On the page each pupil begins a new sheet, on which nobody else
+is. Where nobody was named it is `null` in JSON, empty in CSV, `--pupil -` on the command line.
 
 ## The page
 
@@ -45,7 +46,8 @@ HTML for A4, one file without scripts and without anything from elsewhere; every
 was tried, the mean score, what was to be corrected most often, and the score of each attempt in the order of the lesson. For each
 attempt:
 
-- the score, what was good, and the one thing to correct;
+- the score, what was good, and the one thing to correct; without one, what that means: that nothing was wrong is said only where
+  every fault was judged, none is likely and no number is poor; else nothing was sure enough, or not enough was seen;
 - the measures that the tablet shows, with what is good;
 - the pupil at the four keyframes, the standard behind him as a shadow: seen from the side that leads, or from the front where the
   movement goes aside, or the difference does when something is to be corrected. How far a joint is off is shown by pattern and
@@ -59,27 +61,32 @@ attempt:
   size; a recorded attempt has no covariances.
 
 The mean score's sigma is the mean of the attempts' sigmas: the errors of one pupil are alike, and more attempts make it no surer.
+Where nobody was named there is no mean score: those attempts are of several pupils, and it would be taken for somebody's.
 
 ## CSV
 
-RFC 4180, UTF-8 with a byte order mark, decimal point, a line an attempt. A text that a spreadsheet would take for a formula (it
-begins with `=`, `+`, `-` or `@`) has an apostrophe in front.
+UTF-8 with a byte order mark, a line an attempt. In English and Chinese it is as RFC 4180 has it, with a decimal point; in a German
+or Spanish report cells are parted by semicolons and numbers have a decimal comma, as spreadsheets there expect: `--language`
+chooses. A text that a spreadsheet would take for a formula (it begins with `=`, `+`, `-` or `@`), a date, a time or another number
+(`7-2`, `07`, `1E5`; no [code](pupils.md) of today) has an apostrophe in front; from a file, spreadsheets show it.
 
 """
 _AFTER_COLUMNS: Final = """
-Then for each measure that the tablet shows in one of the attempts, `NAME_UNIT`, `NAME_UNIT_sigma` and `NAME_UNIT_verdict`; empty
-where an attempt has no such measure. In a spreadsheet that wants a decimal comma, import the file as text with a decimal point.
+Then for each measure that the tablet shows in one of the attempts, `ACTION_NAME_UNIT`, `ACTION_NAME_UNIT_sigma` and
+`ACTION_NAME_UNIT_verdict`, such as `squat_trunk_deg`; empty where an attempt is at another action. What two actions call the same
+is measured otherwise, so each has columns of its own. `pct` is per cent of the pupil's height.
 
 """
 _MEANINGS: Final = {
     "lesson": "as `kinebox lessons` lists it",
     "lesson_title": "what people call it",
-    "day": "of the attempt, where the box stands",
+    "day": "of the attempt, in the time zone of the machine that reports",
     "time": "likewise",
     "attempt": "counts the lesson's attempts from 1; stays the same with `--pupil`",
     "pupil": "code; empty if nobody was named",
     "action": "its name",
     "action_title": "in the report's language",
+    "by": "how the action is known: `recognised` by the box, which may be wrong, or `chosen` by a person",
     "handed": "the side that leads",
     "duration_s": "from start to end, seconds",
     "duration_s_sigma": "of that",
@@ -88,6 +95,9 @@ _MEANINGS: Final = {
     "praise": "what was good, in the report's language",
     "cue": "what to correct, likewise",
     "cue_certainty": "how likely it is that this fault was made, 0 to 1",
+    "silence": "what an empty `cue` means: `fine` nothing was wrong, `unsure` nothing that is sure enough to correct, `unseen` too "
+    "little was seen",
+    "source": "`recorded`: as the tablet said on the day; `evaluated`: the recorded motion was evaluated again",
 }
 _KINDS: Final = {"string": "text", "integer": "whole number", "number": "number", "boolean": "true or false"}
 

@@ -1,6 +1,7 @@
 """From feedbacks to a report: numbers, names and texts, for whichever form."""
 
 import datetime as dt
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -99,7 +100,7 @@ def sheet_of(
         )
     numbered = [(number, one) for number, one in enumerate(ordered, start=1) if pupil in {None, one.pupil}]
     if not numbered:
-        codes = ", ".join(f"'{code}'" for code in sorted({one.pupil for one in ordered}))
+        codes = ", ".join(f"'{code}'" for code in sorted({one.pupil for one in ordered}, key=_as_counted))
         raise UserError(f"lesson {facts.name} has no attempt of pupil '{pupil}'; its pupils are {codes}")
     attempts = tuple(_attempt(facts, number, one, teachings.get(one.feedback.action), language) for number, one in numbered)
     report = document.Report(
@@ -136,6 +137,7 @@ def _attempt(facts: LessonFacts, number: int, tried: Tried, teaching: Teaching |
         score_sigma=_rounded(feedback.score_sigma),
         praise=_praise(feedback, faults.get(feedback.praise), language),
         cue=_cue(feedback, faults.get(feedback.cue), language),
+        silence=feedback.silence,
         measures=_measures(feedback, teaching, language),
         judgements=tuple(
             document.Judgement(fault=one.fault, severity=_rounded(one.severity), sigma=_rounded(one.sigma))
@@ -179,7 +181,7 @@ def _measure(result: MeasureResult, shown: bool, taught: Shown | None, language:
 
 
 def _pupils(attempts: Sequence[document.Attempt]) -> tuple[document.PupilSummary, ...]:
-    codes = sorted({attempt.pupil for attempt in attempts}, key=lambda code: (code is None, code or ""))
+    codes = sorted({attempt.pupil for attempt in attempts}, key=lambda code: (code is None, _as_counted(code or "")))
     found = []
     for code in codes:
         own = [attempt for attempt in attempts if attempt.pupil == code]
@@ -190,8 +192,15 @@ def _pupils(attempts: Sequence[document.Attempt]) -> tuple[document.PupilSummary
     return tuple(found)
 
 
+def _as_counted(code: str) -> tuple[list[tuple[str, int]], str]:
+    """By which codes are sorted as people do: 7 before 12, B2 before B10; and 07 before 7, always."""
+    return [(letters, int(digits or 0)) for letters, digits in re.findall(r"([^0-9]*)([0-9]*)", code)], code
+
+
 def _action(attempts: Sequence[document.Attempt]) -> document.ActionSummary:
     scores = [(one.score, one.score_sigma) for one in attempts if one.score is not None and one.score_sigma is not None]
+    # Attempts of nobody who was named are of several pupils: their mean would be taken for somebody's.
+    meant = scores if attempts[0].pupil is not None else []
     cues = [one.cue for one in attempts if one.cue is not None]
     # Counted from the last one on: of those that were said as often, the latest matters more.
     most = Counter(cue.fault for cue in reversed(cues)).most_common(1)
@@ -201,8 +210,8 @@ def _action(attempts: Sequence[document.Attempt]) -> document.ActionSummary:
         title=attempts[0].title,
         attempts=len(attempts),
         scored=len(scores),
-        score=_rounded(sum(score for score, _ in scores) / len(scores)) if scores else None,
-        score_sigma=_rounded(sum(sigma for _, sigma in scores) / len(scores)) if scores else None,
+        score=_rounded(sum(score for score, _ in meant) / len(meant)) if meant else None,
+        score_sigma=_rounded(sum(sigma for _, sigma in meant) / len(meant)) if meant else None,
         cue=name,
         cue_text=next((cue.text for cue in cues if cue.fault == name), None),
         cue_count=count,

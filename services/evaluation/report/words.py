@@ -4,7 +4,7 @@
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from models.messages.feedback import Colour, Verdict
+from models.messages.feedback import Colour, Silence, Verdict
 from models.teaching.measure import Side
 from models.teaching.schema import Language
 
@@ -29,10 +29,11 @@ class Words:
         scores: title of the drawing of scores.
         good: before what was good.
         next_time: before what to correct.
-        fine: nothing to correct.
-        unseen: not seen well enough to judge.
+        silence: in the place of what to correct.
+        rest: the same where something was good, and too little else was seen.
         score: before a score.
         not_known: in the place of a number.
+        of_height: behind a percentage of the pupil's height.
         should_be: what is good; with {range}.
         verdicts, colours: what they mean.
         model: what the shadow is.
@@ -65,10 +66,11 @@ class Words:
     scores: str
     good: str
     next_time: str
-    fine: str
-    unseen: str
+    silence: dict[Silence, str]
+    rest: str
     score: str
     not_known: str
+    of_height: str
     should_be: str
     verdicts: dict[Verdict, str]
     colours: dict[Colour, str]
@@ -89,6 +91,10 @@ class Words:
 
 def _verdicts(good: str, fair: str, poor: str, unknown: str) -> dict[Verdict, str]:
     return {"good": good, "fair": fair, "poor": poor, "unknown": unknown}
+
+
+def _silence(fine: str, unsure: str, unseen: str) -> dict[Silence, str]:
+    return {"fine": fine, "unsure": unsure, "unseen": unseen}
 
 
 def _sides(lead: str, other: str, both: str, left: str, right: str) -> dict[Side, str]:
@@ -116,10 +122,11 @@ WORDS: Final[dict[Language, Words]] = {
         scores="Score of each attempt",
         good="Good",
         next_time="Next time",
-        fine="No correction this time",
-        unseen="Not seen well enough to judge",
+        silence=_silence("No correction this time", "Nothing that is sure enough to correct", "Not seen well enough to judge"),
+        rest="The rest was not seen well enough",
         score="Score",
         not_known="not known",
+        of_height="of height",
         should_be="good: {range}",
         verdicts=_verdicts("Good", "Nearly", "Work on it", "Not known"),
         colours=_colours("As it should be", "A little off", "Off", "Not sure"),
@@ -153,10 +160,11 @@ WORDS: Final[dict[Language, Words]] = {
         scores="每次得分",
         good="做得好",
         next_time="下一次",
-        fine="这次没有要纠正的",
-        unseen="看得不够清楚，无法评价",
+        silence=_silence("这次没有要纠正的", "没有足够把握指出要纠正的地方", "看得不够清楚，无法评价"),
+        rest="其余部分看得不够清楚",
         score="得分",
         not_known="未知",
+        of_height="身高",
         should_be="良好：{range}",
         verdicts=_verdicts("好", "接近", "要练习", "未知"),
         colours=_colours("符合要求", "略有偏差", "偏差大", "不确定"),
@@ -190,10 +198,13 @@ WORDS: Final[dict[Language, Words]] = {
         scores="Punkte je Versuch",
         good="Gut",
         next_time="Nächstes Mal",
-        fine="Diesmal keine Korrektur",
-        unseen="Nicht gut genug gesehen, um zu urteilen",
+        silence=_silence(
+            "Diesmal keine Korrektur", "Nichts ist sicher genug, um es zu korrigieren", "Nicht gut genug gesehen, um zu urteilen"
+        ),
+        rest="Der Rest war nicht gut genug zu sehen",
         score="Punkte",
         not_known="nicht bekannt",
+        of_height="der Größe",
         should_be="gut: {range}",
         verdicts=_verdicts("Gut", "Fast", "Daran üben", "Nicht bekannt"),
         colours=_colours("Wie es sein soll", "Etwas daneben", "Daneben", "Nicht sicher"),
@@ -227,10 +238,15 @@ WORDS: Final[dict[Language, Words]] = {
         scores="Puntos de cada intento",
         good="Bien",
         next_time="La próxima vez",
-        fine="Esta vez, sin correcciones",
-        unseen="No se vio lo bastante bien para evaluarlo",
+        silence=_silence(
+            "Esta vez, sin correcciones",
+            "Nada lo bastante seguro como para corregirlo",
+            "No se vio lo bastante bien para evaluarlo",
+        ),
+        rest="El resto no se vio lo bastante bien",
         score="Puntos",
         not_known="desconocido",
+        of_height="de estatura",
         should_be="bien: {range}",
         verdicts=_verdicts("Bien", "Casi", "A trabajar", "Desconocido"),
         colours=_colours("Como debe ser", "Algo desviado", "Desviado", "No seguro"),

@@ -1,9 +1,9 @@
 """Reads signals off a track: values, and by first-order propagation how sure they are."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Final
+from typing import Final, Literal, TypeVar
 
 import numpy as np
 
@@ -11,11 +11,13 @@ from models.arrays import Bool, Float
 from models.motions.motion import Handed
 from services.evaluation.signals.mass import masses_of
 from services.evaluation.signals.posture import BodySide, Posture, SideAsked
-from services.evaluation.signals.series import LASTINGS, NOISES, Series
+from services.evaluation.signals.series import ERRORS, SURE_DEG, Series
 from services.evaluation.signals.signal import Signal
 from services.evaluation.stature import Stature, stature_of
 from services.evaluation.track import Track
 from services.evaluation.uncertainty import NETWORK, Uncertainty, roots
+
+Frames = TypeVar("Frames", Float, Bool)
 
 _STEP: Final = 0.005
 """Metres (per second, per second squared) over which a formula's slope is taken: as far as joints are off. A derivative at the
@@ -50,18 +52,17 @@ class Reading:
 
     def of(self, signal: Signal, side: SideAsked) -> Series:
         """A signal of one side, or the mean of both; of a signal without sides, `side` tells which is positive."""
-        if side == "both" and not signal.sided:
-            side = "lead"
-        key = (signal.name, side)
+        whose = "both" if side == "both" and signal.sided else self._body_side("lead" if side == "both" else side)
+        key = (signal.name, whose)
         if key not in self._done:
-            if side == "both":
+            if whose == "both":
                 left, right = (self.of(signal, one) for one in ("left", "right"))
                 self._done[key] = left.plus(right, 0.5, 0.5)
             else:
-                self._done[key] = self._compute(signal, self._body_side(side))
+                self._done[key] = self._compute(signal, whose)
         return self._done[key]
 
-    def _body_side(self, side: SideAsked) -> BodySide:
+    def _body_side(self, side: Literal["lead", "other", "left", "right"]) -> BodySide:
         if side == "left" or side == "right":  # noqa: PLR1714 (the type is narrowed by this)
             return side
         if side == "lead":
@@ -74,6 +75,20 @@ class Reading:
         late_m = self.model.timing_s * np.nan_to_num(self._derivatives[1])
         scale = np.array(self.model.noise_scale)[:, None, None]
         return roots(scale**2 * self.track.covariance_m2 + late_m[..., :, None] * late_m[..., None, :])
+
+    @cached_property
+    def _moving_roots_m(self) -> Float:
+        """(T, 17, 3, 3) the largest of those that a joint's velocity is made of."""
+        return _largest(self._roots_m, self._known, (2, 3))
+
+    @cached_property
+    def _moving_seen(self) -> Bool:
+        """(T, 17) whether all places that a joint's velocity is made of were seen."""
+        return _all_seen(self.track.seen, self._known)
+
+    @cached_property
+    def _known(self) -> Bool:
+        return np.asarray(np.isfinite(self.track.joints_m).all(axis=2))
 
     @cached_property
     def _derivatives(self) -> tuple[Float, Float, Float]:
@@ -98,38 +113,37 @@ class Reading:
         slopes = _slopes(
             lambda moved: signal.formula(Posture(moved, side, stature_m, self._masses)), points, used, value, signal.turns
         )
-        if signal.turns:
-            value = unwrapped(value)
-        if signal.name == "heading":
-            value = value - first_known(value)
-        return self._series(signal, value, slopes, used)
+        series = self._series(signal, value, slopes, used)
+        if signal.rate_of:
+            return self._rate(series, signal)
+        if signal.from_first:
+            whole = unwrapped(value)
+            return replace(series, value=whole - first_known(whole))
+        return replace(series, value=unwrapped(value, series.sigma <= SURE_DEG), turns=True) if signal.turns else series
 
     def _series(self, signal: Signal, value: Float, slopes: Float, used: list[int]) -> Series:
         count = len(self.track)
         model = self.model
         order = signal.order
-        noise = _rate_share(model.noise_s, order) * (slopes[..., None, :] @ self._roots_m[:, used])[..., 0, :]
+        roots_m, joints_seen = (self._moving_roots_m, self._moving_seen) if order else (self._roots_m, self.track.seen)
+        noise = _rate_share(model.noise_s, order) * (slopes[..., None, :] @ roots_m[:, used])[..., 0, :]
         lasting = _rate_share(model.landmark_s, order) * slopes * np.array(model.landmark_m)[used, None]
-        noise, lasting = (model.mixed[used].T @ factors for factors in (noise, lasting))
-        lastings = np.zeros((count, LASTINGS))
-        lastings[:, :NOISES] = lasting.reshape(count, NOISES)
-        if signal.unit == "pct":
-            lastings[:, NOISES] = -value * self.stature.sigma_m / self.stature.metres
-        seen = _seen(slopes, self.track.seen[:, used]) & np.isfinite(value)
-        series = Series(signal.unit, self.track.t_s, value, noise.reshape(count, NOISES), lastings, seen, model)
-        return self._rate(series, signal) if signal.rate_of else series
+        noise, lasting = ((model.mixed[used].T @ factors).reshape(count, ERRORS) for factors in (noise, lasting))
+        shares = self.stature.sigma_m / self.stature.metres if signal.unit == "pct" else 0.0
+        seen = _seen(slopes, joints_seen[:, used]) & np.isfinite(value)
+        return Series(signal.unit, self.track.t_s, value, noise, lasting, -value * shares, seen, model)
 
     def _rate(self, series: Series, signal: Signal) -> Series:
         """How fast an angle gets smaller: positive is straightening."""
         model = self.model
-        grows = [rate(factors, series.frame_s) for factors in (series.value, series.noise, series.lasting)]
+        known = np.isfinite(series.value)
+        value = -rate(series.value, series.frame_s)
         noise, lasting = (
-            np.hypot(slope, _rate_share(time_s, 1) * factors)
-            for slope, time_s, factors in zip(
-                grows[1:], (model.noise_s, model.landmark_s), (series.noise, series.lasting), strict=True
-            )
+            np.hypot(rate(factors, series.frame_s), _rate_share(time_s, 1) * _largest(factors, known, (1,)))
+            for time_s, factors in ((model.noise_s, series.noise), (model.landmark_s, series.lasting))
         )
-        return Series(signal.unit, series.t_s, -grows[0], noise, lasting, series.seen & np.isfinite(grows[0]), model)
+        seen = _all_seen(series.seen, known) & np.isfinite(value)
+        return Series(signal.unit, series.t_s, value, noise, lasting, np.zeros(len(series)), seen, model)
 
 
 def _slopes(formula: Callable[[Callable[[int], Float]], Float], points: Float, used: list[int], value: Float, turns: bool) -> Float:
@@ -185,11 +199,22 @@ def rate_of_rate(values: Float, frame_s: float) -> Float:
     return out
 
 
-def unwrapped(degrees: Float) -> Float:
-    """Angles without jumps of a whole turn; across what is unknown, too."""
+def unwrapped(degrees: Float, sure: Bool | None = None) -> Float:
+    """Angles without jumps of a whole turn; across what is unknown, too.
+
+    Args:
+        degrees: (T,) within half a turn of nought; NaN is unknown.
+        sure: (T,) of which frames it is known at all where they point; None for all. Through others no turn is followed: after them
+            angles are within half a turn of nought again.
+    """
     out = degrees.copy()
-    known = np.isfinite(degrees)
-    out[known] = np.unwrap(degrees[known], period=360)
+    known = np.flatnonzero(np.isfinite(degrees))
+    if not len(known):
+        return out
+    follows = np.ones(len(known) - 1, np.bool_) if sure is None else sure[known][1:] & sure[known][:-1]
+    turns = np.concatenate(([0.0], np.cumsum(-np.rint(np.diff(degrees[known]) / 360))))
+    begins = np.maximum.accumulate(np.where(np.concatenate(([False], follows)), 0, np.arange(len(known))))
+    out[known] += 360 * (turns - turns[begins])
     return out
 
 
@@ -197,3 +222,28 @@ def first_known(values: Float) -> float:
     """The first value that is a number; NaN if there is none."""
     known = values[np.isfinite(values)]
     return float(known[0]) if len(known) else float("nan")
+
+
+def _around(values: Frames) -> Frames:
+    """(5, T, ...) of (T, ...): the frames from two before to two after each; at the ends those that there are."""
+    frames = np.arange(len(values)) + np.arange(-2, 3)[:, None]
+    return np.asarray(values[np.clip(frames, 0, len(values) - 1)])
+
+
+def _used(known: Bool) -> Bool:
+    """(5, T, ...) which of the frames around it, (T, ...), the rate in a frame is made of (`rate`); it itself counts as well."""
+    wide = np.asarray(_around(known).all(axis=0))
+    return np.stack([wide, np.ones_like(wide), np.ones_like(wide), np.ones_like(wide), wide])
+
+
+def _all_seen(seen: Bool, known: Bool) -> Bool:
+    """(T, ...) whether all that the rate in a frame is made of was seen, as (T, ...) in each frame."""
+    return np.asarray((_around(seen) | ~_used(known)).all(axis=0))
+
+
+def _largest(factors: Float, known: Bool, axes: tuple[int, ...]) -> Float:
+    """(T, ..., one or more axes) the largest factors of an error of all that the rate in a frame is made of."""
+    around = _around(factors)
+    sizes = np.where(_used(known), np.nan_to_num((around**2).sum(axis=tuple(axis + 1 for axis in axes))), -1.0)
+    picked = np.expand_dims(sizes.argmax(axis=0), (0, *(axis + 1 for axis in axes)))
+    return np.asarray(np.take_along_axis(around, picked, axis=0)[0])

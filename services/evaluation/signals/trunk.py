@@ -74,6 +74,7 @@ SIGNALS = (
         "Where hips and shoulders face, as seen from above, against the first known frame: "
         "positive with the side that leads turned backwards.",
         _heading,
+        from_first=True,
     ),
     Signal(
         "trunk_length",

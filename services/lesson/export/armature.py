@@ -64,6 +64,15 @@ class Armature:
     turns: Float
     held: Bool
 
+    @property
+    def lost(self) -> Bool:
+        """(T, bones) where a bone is not where the points were: its own turn is held, or that of one which carries it."""
+        lost = self.held.copy()
+        for index, bone in enumerate(self.bones):
+            if bone.parent >= 0:
+                lost[:, index] |= lost[:, bone.parent]
+        return lost
+
 
 @dataclass(frozen=True, eq=False)
 class _Seen:

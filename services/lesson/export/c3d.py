@@ -28,7 +28,11 @@ _MM: Final = 1000.0
 
 
 def encode(take: Take) -> bytes:
-    """The file. Positions are 32-bit floats. Of more than `MOST_EVENTS` keyframes the first stand in the file."""
+    """The file. Positions are 32-bit floats. Of more than `MOST_EVENTS` keyframes the first stand in the file.
+
+    Raises:
+        UnicodeEncodeError: the pupil's code is none, see `models.messages.pupil`, and C3D has no place for its letters.
+    """
     writer = c3d.Writer(point_rate=take.rate_hz, point_scale=-SIGMA_STEP_MM, point_units="mm")
     points = np.zeros((len(take.track), len(LABELS), 5))
     points[..., :3] = np.nan_to_num(take.joints_m * _MM)
@@ -76,7 +80,7 @@ def _add_event_group(writer: c3d.Writer, keyframes: tuple[Keyframe, ...], pupil:
 
 
 def _packed(texts: tuple[str, ...] | list[str]) -> tuple[str, int, int]:
-    """Texts of one length in a row, the length, and how many: what a parameter of texts is."""
-    texts = [text.encode("ascii", "replace").decode()[:127] for text in texts]
+    """Texts of one length in a row, the length, and how many: what a parameter of texts is. UnicodeEncodeError beyond ASCII."""
+    texts = [text.encode("ascii").decode()[:127] for text in texts]
     length = max(len(text) for text in texts)
     return "".join(text.ljust(length) for text in texts), length, len(texts)

@@ -1,7 +1,7 @@
 """GLB, binary glTF 2.0 (https://registry.khronos.org/glTF/specs/2.0): a figure of simple limbs that moves; metres, y up.
 
-A limb is not drawn while its rotation is unknown: its shape is scaled to nothing then. Who it is and the keyframes stand in the
-`extras` of `asset`.
+A limb is not drawn while its rotation is unknown, or that of a bone between it and the hips, which carries it: its shape is scaled
+to nothing then. Who it is and the keyframes stand in the `extras` of `asset`.
 """
 
 import json
@@ -84,9 +84,10 @@ def encode(take: Take) -> bytes:
         if np.abs(tree.turns[:, bone] - np.eye(3)).max() > _TOLERANCE:
             motion.add(bone, "rotation", times, _rotations(tree, bone))
     meshes: list[dict[str, Any]] = []
+    lost = tree.lost
     for shape in shapes_of(tree.bones):
         nodes[shape.bone].setdefault("children", []).append(len(nodes))
-        unknown = tree.held[:, shape.bone]
+        unknown = lost[:, shape.bone]
         if unknown.any():
             instants, scales = _blinking(take.seconds, unknown)
             motion.add(len(nodes), "scale", content.add(instants, bounds=True), scales, "STEP")

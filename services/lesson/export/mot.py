@@ -119,8 +119,8 @@ def _add(found: Coordinates, name: str, values: Float, *, turning: bool = False)
     """One coordinate. One that turns goes on over half a turn rather than jump by a whole one."""
     known = np.isfinite(values)
     if known.any():
-        complete = held(values, known)
-        found[name] = (np.unwrap(complete, period=360.0) if turning else complete, ~known)
+        whole = held(values, known)
+        found[name] = (np.unwrap(whole, period=360.0) if turning else whole, ~known)
 
 
 def _pelvis_axes(right: Float, up: Float) -> Float:

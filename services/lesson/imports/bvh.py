@@ -16,9 +16,10 @@ from services.lesson.imports.names import NamesError, points_of
 from services.lesson.imports.points import NamedPoints, require_size, track_of_points
 from services.lesson.imports.text import lines_of
 
-_UNITS_M: Final = (1.0, 0.01, 0.0254, 0.001)
-"""BVH says none: it is the first that makes a leg as long as a leg."""
-_LEG_M: Final = (0.4, 1.3)
+UNITS_M: Final = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "cmu": 0.0254 / 0.45}
+"""BVH says none: it is the one that makes a leg as long as a leg. The library of CMU is in 1/0.45 inches, as its ASF files say."""
+_LEG_M: Final = (0.45, 1.1)
+"""Thigh and shank of people of 1.0 to 2.2 m; so narrow that only some inches can be taken for CMU's unit."""
 _AXES: Final = {"X": 0, "Y": 1, "Z": 2}
 _CHANNEL: Final = re.compile(r"([XYZ])(position|rotation)", re.IGNORECASE)
 _DEEPEST: Final = 200
@@ -66,15 +67,17 @@ class _Words:
         return UserError(f"{self._source}, line {self._words[self._at - 1][0]}: {what}; correct it or export it again")
 
 
-def decode(data: bytes, source: str) -> Track:
+def decode(data: bytes, source: str, unit: str | None = None) -> Track:
     """The track of a file.
 
     Args:
         data: its content.
         source: its name, for errors.
+        unit: one of `UNITS_M`, for a file whose unit does not follow from the length of its legs.
 
     Raises:
-        UserError: it is no BVH, cut off, holds what is no number, no unit makes it a person, or see `track_of_points`.
+        UserError: it is no BVH, cut off, holds what is no number, `unit` makes it no person, or without one none or two do, or see
+            `track_of_points`.
     """
     lines = lines_of(data, source, "BVH")
     if not lines or lines[0].strip().upper() != "HIERARCHY":
@@ -91,7 +94,7 @@ def decode(data: bytes, source: str) -> Track:
     names = [joint.name for joint in joints]
     places = _places(joints, values)
     rate_hz = float(f"{1 / step_s:.6g}")
-    return track_of_points(NamedPoints(source, names, places, _unit_m(names, joints, source), rate_hz), FIGURES)
+    return track_of_points(NamedPoints(source, names, places, _unit_m(names, joints, source, unit), rate_hz), FIGURES)
 
 
 def _hierarchy(words: _Words) -> list[_Joint]:
@@ -186,14 +189,24 @@ def _places(joints: list[_Joint], values: Float) -> Float:
     return np.stack(places, axis=1)
 
 
-def _unit_m(names: list[str], joints: list[_Joint], source: str) -> float:
+def _unit_m(names: list[str], joints: list[_Joint], source: str, unit: str | None) -> float:
     try:
         places = points_of(names)
     except NamesError as error:
         raise UserError(f"{source} {error}") from error
 
     leg = float(sum(np.linalg.norm(joints[places[coco.INDEX[name]]].offset) for name in ("left_knee", "left_ankle")))
-    for unit_m in _UNITS_M:
-        if _LEG_M[0] <= leg * unit_m <= _LEG_M[1]:
-            return unit_m
-    raise UserError(f"{source}: a leg is {leg:g} long, in no unit that of a person; export it in centimetres")
+    possible = [name for name, unit_m in UNITS_M.items() if _LEG_M[0] <= leg * unit_m <= _LEG_M[1]]
+    if unit is not None:
+        if unit not in UNITS_M:
+            raise UserError(f"there is no unit '{unit}'; choose one of {', '.join(UNITS_M)}")
+        if unit not in possible:
+            raise UserError(
+                f"{source}: in the unit '{unit}' a leg is {leg * UNITS_M[unit]:.2g} m long, that of nobody; correct --unit"
+            )
+        return UNITS_M[unit]
+    if len(possible) == 1:
+        return UNITS_M[possible[0]]
+    if possible:
+        raise UserError(f"{source}: a leg is {leg:.3g} long, and the unit may be {' or '.join(possible)}; say it with --unit")
+    raise UserError(f"{source}: a leg is {leg:.3g} long, in no unit that of a person; export it in centimetres")

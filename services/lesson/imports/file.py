@@ -13,8 +13,12 @@ READERS: Final[dict[str, Callable[[bytes, str], Track]]] = {".trc": trc.decode, 
 MOST_BYTES: Final = 500_000_000
 
 
-def read_motion(file: Path) -> Track:
+def read_motion(file: Path, unit: str | None = None) -> Track:
     """The track of a TRC, C3D or BVH file.
+
+    Args:
+        file: of the motion.
+        unit: of a BVH file, which says none: one of `bvh.UNITS_M`; None for the one that follows from its legs.
 
     Raises:
         UserError: it cannot be read; the reason names the file and says what to do.
@@ -23,6 +27,8 @@ def read_motion(file: Path) -> Track:
     decode = READERS.get(file.suffix.lower())
     if decode is None:
         raise UserError(f"{name} is of no kind that can be imported; name a file that ends with {', '.join(READERS)}")
+    if unit is not None and decode is not bvh.decode:
+        raise UserError(f"--unit is for BVH files, which say none; {name} says its own; leave --unit out")
     try:
         if file.stat().st_size > MOST_BYTES:
             raise UserError(f"{name} is larger than {MOST_BYTES / 1e6:.0f} MB; export the attempt alone")
@@ -31,4 +37,4 @@ def read_motion(file: Path) -> Track:
         raise UserError(f"{name} does not exist; correct the name") from error
     except OSError as error:
         raise UserError(f"{name} cannot be read: {error.strerror}; correct its path or its permissions") from error
-    return decode(data, name)
+    return decode(data, name) if unit is None else bvh.decode(data, name, unit)

@@ -1,7 +1,7 @@
 """Whether what is said is right: named faults, false cues, which fault is taken for which, and the response against severity.
 
 `python -m tests.bench.teaching.cues` takes the true keyframes: on true motion with errors as fusion has them, and on the twin
-(`--on twin`). How much is lost when keyframes are found, too, `make bench-keyframes` says, with the same figures.
+(`--on twin`). `make bench-keyframes` prints the same figures of attempts as the box finds them, keyframes and all.
 """
 
 import argparse
@@ -21,6 +21,7 @@ from models.errors import UserError
 from models.messages.feedback import Judgement
 from models.motions.actions.library import ACTIONS
 from models.teaching.schema import Teaching, Vocabulary, decode_teaching
+from services.evaluation.appraisal import measures_of
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.cues import Said, choose
 from services.evaluation.faults import judge
@@ -32,6 +33,7 @@ from tests.bench.report import Report
 from tests.bench.seeds import COUNT, seeds_of
 from tests.bench.table import Cell, ResultTable
 from tests.bench.teaching.cases import Case, double, single, well
+from tests.bench.teaching.finding import Found
 from tests.bench.teaching.lessons import lesson_of_all
 from tests.bench.teaching.noise import as_fused
 from tests.bench.teaching.performed import RATE_HZ, Performed, kept
@@ -62,8 +64,9 @@ def taught(action: str) -> Teaching:
 def result(case: Case, track: Track, attempt: FoundAttempt) -> Result:
     """Judge an attempt as the box does."""
     teaching = taught(case.action)
-    judgements = judge(teaching, Reading(track, attempt.handed), attempt)
-    return Result(case, choose(teaching, judgements), judgements)
+    reading = Reading(track, attempt.handed)
+    judgements = judge(teaching, reading, attempt)
+    return Result(case, choose(teaching, judgements, measures_of(teaching, reading, attempt)), judgements)
 
 
 def cases_of(split: Split, seed: int) -> list[Case]:
@@ -103,12 +106,24 @@ def on_twin(split: Split, seeds: Sequence[int], data: Path) -> list[Result]:
     return results
 
 
+def of_found(split: Split, seed: int, track: Track, found: Found) -> list[Result]:
+    """What the box says of each true attempt as it found it; of one that it did not find it says nothing."""
+    results = []
+    for true in found.true:
+        case = Case(split, seed, true.action, dict(true.faults))
+        own = next((decided.attempt for pair, decided in found.pairs if pair is true), None)
+        results.append(Result(case, Said(), ()) if own is None else result(case, around(track, own), own))
+    return results
+
+
 def figures(results: Iterable[Result]) -> dict[str, float]:
     """Percent, over cases at full severity; NaN where there are none.
 
     Returns:
         `cue_accuracy_pct`: of attempts with one fault, whose fault is named. `false_cue_pct`: of attempts without a fault, that are
-        corrected. `cue_double_pct`: of attempts with two, where one of them is named. `praised_pct`: of attempts without a fault.
+        corrected. `cue_double_pct`: of attempts with two, where one of them is named. `praised_pct` and `fine_pct`: of attempts
+        without a fault, where something is praised, and that are told that nothing was wrong. `false_fine_pct`: of attempts with
+        faults, that are told the same.
     """
     full = [one for one in results if set(one.case.faults.values()) <= {1.0}]
     faultless, alone, two = ([one for one in full if len(one.case.faults) == count] for count in (0, 1, 2))
@@ -118,6 +133,8 @@ def figures(results: Iterable[Result]) -> dict[str, float]:
         "cue_double_pct": _percent(one.said.cue in one.case.faults for one in two),
         "wrong_cue_pct": _percent(bool(one.said.cue) and one.said.cue not in one.case.faults for one in alone),
         "praised_pct": _percent(bool(one.said.praise) for one in faultless),
+        "fine_pct": _percent(one.said.fine for one in faultless),
+        "false_fine_pct": _percent(one.said.fine for one in (*alone, *two)),
     }
 
 
@@ -142,7 +159,7 @@ def response(results: Iterable[Result]) -> ResultTable:
     rows = []
     for severity in sorted({next(iter(one.case.faults.values())) for one in one_fault}):
         some = [one for one in one_fault if severity in one.case.faults.values()]
-        judged = [_own(one) for one in some]
+        judged = [_own(one) for one in some if one.judgements]
         known = np.array([one.severity for one in judged if one.severity is not None and one.sigma is not None])
         named = _percent(one.said.cue in one.case.faults for one in some)
         wrong = _percent(bool(one.said.cue) and one.said.cue not in one.case.faults for one in some)

@@ -1,14 +1,15 @@
-"""Attempts and keyframes as they are found, beside the true ones: `make bench-keyframes`, the paper's Figure 9.
+"""Attempts, keyframes and cues as the box finds them, beside what is true: `make bench-keyframes`, the paper's Figure 9.
 
-Lessons are of test pupils: on true motion at 30 Hz; on the twin, through fusion as the box runs it; and half an hour of walking,
-waiting and all else that pupils do between attempts, on the twin. Beside what is found with the standards stands what equation 17
-finds alone: the maxima of the motion's energy.
+Lessons are of test pupils: rendered, through networks and fusion as the box runs them; on true motion at 30 Hz; on the twin; and
+half an hour of walking, waiting and all else that pupils do between attempts, on the twin. Beside what is found with the standards
+stands what equation 17 finds alone: the maxima of the motion's energy.
 """
 
 import argparse
 import sys
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -32,6 +33,8 @@ from services.evaluation.track import Track, known_track
 from tests.bench.report import Report
 from tests.bench.seeds import COUNT, seeds_of
 from tests.bench.table import Cell, ResultTable
+from tests.bench.teaching import cues
+from tests.bench.teaching.filmed import films
 from tests.bench.teaching.finding import (
     SETTLED_S,
     SIX,
@@ -47,6 +50,7 @@ from tests.bench.teaching.finding import (
 from tests.bench.teaching.lessons import lesson_of_all
 from tests.bench.teaching.twinned import TRACK_HZ, Truth, smooth_of, truth_of
 
+WHERE: Final = ("true", "twin", "rendered", "idle")
 IDLE_S: Final = 1800.0
 _PIECE_S: Final = 360.0
 """Each pupil idles for so long."""
@@ -54,41 +58,63 @@ _AFTER_S: Final = 1.5
 """The pupil stands for so long after his last attempt."""
 _AREA_M: Final = (2.2, 1.6)
 BARS: Final = {
+    "keyframe_f1.rendered": (">=", 0.93),
+    "attempt_f1.rendered": (">=", 0.97),
     "keyframe_f1.true_motion": (">=", 0.98),
     "keyframe_f1.twin": (">=", 0.93),
     "attempt_f1.true_motion": (">=", 0.97),
     "attempt_f1.twin": (">=", 0.97),
     "false_attempts_per_5min.twin": ("<=", 0.0),
+    "cue_accuracy_pct.rendered": (">=", 85.0),
+    "cue_accuracy_pct.twin": (">=", 85.0),
+    "false_cue_pct.rendered": ("<=", 5.0),
+    "false_cue_pct.twin": ("<=", 5.0),
+    "decision_delay_s.rendered.p95": ("<=", SETTLED_S),
     "decision_delay_s.twin.p95": ("<=", SETTLED_S),
     "evaluation_ms": ("<=", 1.0),
     "dtw_ms": ("<=", 1.5),
 }
 
 
-def on_true_motion(split: Split, seeds: Sequence[int]) -> Iterator[tuple[Track, Found]]:
+@dataclass(frozen=True, eq=False)
+class Lesson:
+    """A pupil's lesson as the box has it, and what was found in it."""
+
+    seed: int
+    track: Track
+    found: Found
+
+
+def on_rendered(split: Split, seeds: Sequence[int], data: Path) -> Iterator[Lesson]:
+    """Lessons as four cameras see them; a part of what is performed on true motion."""
+    for plan, track, attempts in films(split, seeds, data):
+        yield Lesson(plan.seed, track, find(track, attempts))
+
+
+def on_true_motion(split: Split, seeds: Sequence[int]) -> Iterator[Lesson]:
     """Whole lessons as they are truly performed."""
     for seed in seeds:
         truth = truth_of(lesson_of_all(split, seed))
         t_s = np.arange(int((truth.motion.duration_s + _AFTER_S) * TRACK_HZ)) / TRACK_HZ
         track = known_track(truth.joints_m(t_s), 1 / TRACK_HZ)
-        yield track, find(track, truth.motion.attempts)
+        yield Lesson(seed, track, find(track, truth.motion.attempts))
 
 
-def on_twin(split: Split, seeds: Sequence[int], data: Path) -> Iterator[tuple[Track, Found]]:
+def on_twin(split: Split, seeds: Sequence[int], data: Path) -> Iterator[Lesson]:
     """The same lessons through the twin and fusion."""
     for seed in seeds:
         plan = lesson_of_all(split, seed)
         truth = truth_of(plan)
         track = smooth_of(plan, truth, data)
-        yield track, find(track, truth.motion.attempts)
+        yield Lesson(seed, track, find(track, truth.motion.attempts))
 
 
-def idle_on_twin(split: Split, seeds: Sequence[int], data: Path, seconds: float = IDLE_S) -> Iterator[tuple[Track, Found]]:
+def idle_on_twin(split: Split, seeds: Sequence[int], data: Path, seconds: float = IDLE_S) -> Iterator[Lesson]:
     """Pupils who do anything but an action, through the twin and fusion."""
     for number in range(int(np.ceil(seconds / _PIECE_S))):
         plan, truth = idling(split, seeds[number % len(seeds)], number)
         track = smooth_of(plan, truth, data)
-        yield track, find(track, ())
+        yield Lesson(plan.seed, track, find(track, ()))
 
 
 def idling(split: Split, seed: int, number: int) -> tuple[Plan, Truth]:
@@ -117,7 +143,7 @@ def _spent(what: Between, subject: Subject, at: Standpoint) -> Motion:
 
 
 def figures(lessons: Sequence[Found], where: str) -> dict[str, float]:
-    """What the lessons come to, under the names of the figures; `where` is "true_motion" or "twin"."""
+    """What the lessons come to, under the names of the figures; `where` is "true_motion", "twin" or "rendered"."""
     out = {f"keyframe_f1.{where}.{action}": keyframe_f1(lessons, action) for action in SIX}
     out[f"keyframe_f1.{where}"] = float(np.mean([keyframe_f1(lessons, action) for action in SIX]))
     out[f"keyframe_f1.{where}.energy_alone"] = float(np.mean([energy_f1(lessons, action) for action in SIX]))
@@ -178,18 +204,21 @@ def main() -> int:
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--split", choices=SPLITS, default="test", help="development, to tune")
     parser.add_argument("--seeds", type=int, default=COUNT, help="pupils")
-    parser.add_argument("--on", choices=("true", "twin", "idle"), action="append", help="only this; all if left out")
+    parser.add_argument("--on", choices=WHERE, action="append", help="only this; all if left out")
     options = parser.parse_args()
     seeds, split = seeds_of(options.split, options.seeds), options.split
     report = Report("bench-keyframes", seeds)
     report.add(speed())
+    on = options.on or WHERE
     try:
-        if options.on is None or "true" in options.on:
-            _add(report, "true_motion", on_true_motion(split, seeds))
-        if options.on is None or "twin" in options.on:
-            _add(report, "twin", on_twin(split, seeds, options.data))
-        if options.on is None or "idle" in options.on:
-            idle = [one for _, one in idle_on_twin(split, seeds, options.data)]
+        if "true" in on:
+            _add(report, split, "true_motion", on_true_motion(split, seeds))
+        if "twin" in on:
+            _add(report, split, "twin", on_twin(split, seeds, options.data))
+        if "rendered" in on:
+            _add(report, split, "rendered", on_rendered(split, seeds, options.data))
+        if "idle" in on:
+            idle = [one.found for one in idle_on_twin(split, seeds, options.data)]
             minutes = sum(one.seconds for one in idle) / 60
             report.add(
                 {"idle_minutes.twin": minutes, "false_attempts_per_5min.twin": 5 * sum(len(one.false) for one in idle) / minutes}
@@ -202,10 +231,13 @@ def main() -> int:
     return 0
 
 
-def _add(report: Report, where: str, lessons: Iterator[tuple[Track, Found]]) -> None:
-    found = [one for _, one in lessons]
-    report.add(figures(found, where))
-    report.tables.append(table(found, where))
+def _add(report: Report, split: Split, where: str, lessons: Iterator[Lesson]) -> None:
+    all_found, said = [], []
+    for one in lessons:
+        all_found.append(one.found)
+        said += cues.of_found(split, one.seed, one.track, one.found)
+    report.add(figures(all_found, where) | {f"{name}.{where}": value for name, value in cues.figures(said).items()})
+    report.tables += [table(all_found, where), *cues.confusion(said)]
 
 
 if __name__ == "__main__":

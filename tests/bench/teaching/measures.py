@@ -1,6 +1,7 @@
 """How well an attempt is measured: values against the truth, and whether their sigmas are honest.
 
     python -m tests.bench.teaching.measures --data build             test pupils through the twin and fusion
+    ... --on rendered                                                as four cameras see them; rendered the first time, for hours
     ... --split development                                          those that may be looked at
 
 Keyframes are the true ones here, so that an error is one of measuring; `tempo_frames` needs found ones and is `bench-keyframes`'.
@@ -35,8 +36,10 @@ from services.evaluation.track import Track, known_track
 from services.evaluation.uncertainty import EXACT, NETWORK
 from tests.bench.report import Report
 from tests.bench.seeds import COUNT, seeds_of
-from tests.bench.table import ResultTable
+from tests.bench.table import Cell, ResultTable
 from tests.bench.teaching.cases import Case, single, well
+from tests.bench.teaching.cues import taught
+from tests.bench.teaching.filmed import films
 from tests.bench.teaching.force_plate import drop_jump, names
 from tests.bench.teaching.lessons import lesson_of
 from tests.bench.teaching.twinned import Truth, around, attempt_of, smooth_of, truth_of
@@ -69,9 +72,9 @@ class Compared:
 
     Attributes:
         action: that was attempted.
-        kind: "frame" for a signal in a frame, else how it was taken.
+        kind: "frame" for a signal in a frame, "shown" for what the page shows, else how it was taken.
         name: of the signal or function.
-        error: measured less true, in the signal's unit.
+        error: measured less true, in the signal's unit; NaN if it was not known.
         sigma: that was stated.
     """
 
@@ -92,6 +95,20 @@ def plan_of(split: Split, seed: int) -> Plan:
     return lesson_of("measures", split, seed, cases_of(split, seed))
 
 
+def on_twin(split: Split, seeds: Sequence[int], data: Path) -> Iterator[tuple[Plan, Truth, Track]]:
+    """Lessons through the twin and fusion."""
+    for seed in seeds:
+        plan = plan_of(split, seed)
+        truth = truth_of(plan)
+        yield plan, truth, smooth_of(plan, truth, data)
+
+
+def on_rendered(split: Split, seeds: Sequence[int], data: Path) -> Iterator[tuple[Plan, Truth, Track]]:
+    """Lessons through pictures, networks and fusion."""
+    for plan, track, _ in films(split, seeds, data):
+        yield plan, truth_of(plan), track
+
+
 def compare(truth: Truth, smooth: Track) -> Iterator[Compared]:
     """Every signal in every frame of every attempt, every signal taken in every way, every function."""
     model = replace(NETWORK, moment_s=0.0)
@@ -108,6 +125,7 @@ def compare(truth: Truth, smooth: Track) -> Iterator[Compared]:
         right = Reading(exact, true.handed, EXACT, told)
         yield from _frames(found, right, attempt)
         yield from _taken(found, right, attempt)
+        yield from _shown(found, right, attempt)
         yield from _jumped(truth, true, found, attempt)
         yield Compared(attempt.action, "stature", "stature", found.stature.metres - truth.stature_m, found.stature.sigma_m)
 
@@ -132,6 +150,15 @@ def _taken(found: Reading, right: Reading, attempt: FoundAttempt) -> Iterator[Co
         if ours.known and theirs.known and ours.sigma > 0:
             kind = "function" if measure.signal is UNSET else measure.take
             yield Compared(attempt.action, kind, name_of(measure).split()[0], ours.value - theirs.value, ours.sigma)
+
+
+def _shown(found: Reading, right: Reading, attempt: FoundAttempt) -> Iterator[Compared]:
+    """What the page shows of the action; NaN where it would be grey."""
+    for shown in taught(attempt.action).shown:
+        ours, theirs = (evaluate(shown, reading, attempt) for reading in (found, right))
+        if theirs.known and not (ours.known and ours.sigma == 0):
+            error, sigma = (ours.value - theirs.value, ours.sigma) if ours.known else (math.nan, math.nan)
+            yield Compared(attempt.action, "shown", f"{attempt.action} {shown.name}", error, sigma)
 
 
 def _jumped(truth: Truth, true: Attempt, found: Reading, attempt: FoundAttempt) -> Iterator[Compared]:
@@ -178,7 +205,9 @@ def figures(compared: Sequence[Compared]) -> dict[str, float]:
         out[figure] = median_error([one for one in jumps if one.name == name])
     out["stature_pct"] = 100 * median_error([one for one in compared if one.kind == "stature"])
     out["within_sigma_pct.signals"] = _mean_within(frames)
-    out["within_sigma_pct.measures"] = _mean_within([one for one in upright if one.kind not in {"frame", "stature", "jump"}])
+    others = {"frame", "shown", "stature", "jump"}
+    out["within_sigma_pct.measures"] = _mean_within([one for one in upright if one.kind not in others])
+    out["within_sigma_pct.shown"] = within_pct(_known([one for one in compared if one.kind == "shown"]))
     out["within_sigma_pct.jumps"] = within_pct(jumps)
     return out
 
@@ -200,7 +229,8 @@ def tables(compared: Sequence[Compared]) -> list[ResultTable]:
     """Median error and share within sigma of each signal and function, and of each way to take a number."""
     upright = [one for one in compared if one.action not in TUMBLES]
     signals = _grouped([one for one in upright if one.kind == "frame"], lambda one: one.name)
-    ways = _grouped(upright, lambda one: one.kind)
+    ways = _grouped([one for one in upright if one.kind != "shown"], lambda one: one.kind)
+    shown = _grouped([one for one in compared if one.kind == "shown"], lambda one: one.name)
     columns = ("values", "median error", "median sigma", "within sigma %")
     out = [
         _table("signals, every frame of upright actions", ("signal", *columns), signals),
@@ -212,7 +242,23 @@ def tables(compared: Sequence[Compared]) -> list[ResultTable]:
         ),
     ]
     tumbles = _grouped([one for one in compared if one.action in TUMBLES and one.kind == "frame"], lambda one: one.name)
-    return [*out, _table("signals, rolls and cartwheels", ("signal", *columns), tumbles)]
+    return [*out, _shown_table(shown), _table("signals, rolls and cartwheels", ("signal", *columns), tumbles)]
+
+
+def _shown_table(groups: dict[str, list[Compared]]) -> ResultTable:
+    """With how often each is known, and how far it is off to one side."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, group in groups.items():
+        known = _known(group)
+        share, bias = 100 * len(known) / len(group), float(np.median([one.error for one in known])) if known else None
+        sigma = float(np.median([one.sigma for one in known])) if known else None
+        rows.append((name, float(len(group)), share, bias, median_error(known), sigma, within_pct(known)))
+    columns = ("measure", "attempts", "known %", "bias", "median error", "median sigma", "within sigma %")
+    return ResultTable("what the page shows", columns, tuple(rows))
+
+
+def _known(compared: Sequence[Compared]) -> list[Compared]:
+    return [one for one in compared if math.isfinite(one.error)]
 
 
 def _table(title: str, columns: tuple[str, ...], groups: dict[str, list[Compared]]) -> ResultTable:
@@ -230,18 +276,18 @@ def main() -> int:
     parser.add_argument("--shared", type=Path, help="folder of the measurement data, for the drop jumps over a force plate")
     parser.add_argument("--split", choices=("development", "test"), default="test")
     parser.add_argument("--seeds", type=int, default=COUNT, help="pupils")
+    parser.add_argument("--on", choices=("twin", "rendered"), default="twin")
     options = parser.parse_args()
     try:
         seeds = seeds_of(options.split, options.seeds)
-        report = Report("measures" if options.split == "test" else "measures.development", seeds)
+        suffix = "".join(f".{word}" for word in (options.on, options.split) if word not in {"twin", "test"})
+        report = Report(f"measures{suffix}", seeds)
         compared, by_seed = [], []
-        for seed in seeds:
-            plan = plan_of(options.split, seed)
-            truth = truth_of(plan)
-            now = list(compare(truth, smooth_of(plan, truth, options.data)))
+        for plan, truth, track in (on_twin if options.on == "twin" else on_rendered)(options.split, seeds, options.data):
+            now = list(compare(truth, track))
             compared += now
             by_seed.append(figures(now))
-            print(f"pupil {seed}: {len(now)} values")
+            print(f"pupil {plan.seed}: {len(now)} values")
     except UserError as error:
         sys.stderr.write(f"measures: {error}\n")
         return 2

@@ -13,12 +13,13 @@ from edge.simulation.lesson.cameras import rig_of
 from edge.simulation.lesson.plan import Plan
 from edge.simulation.lesson.programme import programme_of
 from edge.simulation.lesson.stage import member_of
-from models.arrays import Float
+from models.arrays import Bool, Float
+from models.body.model import Body
 from models.messages.motion import Motion as Smooth
 from models.motions.figure import figure_of
 from models.motions.motion import RATE_HZ, Attempt, Motion
 from models.motions.subject import Subject
-from models.skeleton import coco, coco_feet
+from models.skeleton import coco, smpl
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.track import Track, track_of
 from services.fusion.config import PRESETS
@@ -31,6 +32,7 @@ TRACK_HZ: Final = 30.0
 _LIVE_HZ: Final = 15.0
 _FLUSH_TICKS: Final = 10
 _MARGIN_S: Final = 0.6
+_MOSTLY: Final = 0.5
 _ROOT: Final = Path(__file__).parents[3]
 
 
@@ -82,12 +84,11 @@ class Truth:
         )
 
     def _reach_m(self, off: int, on: int, along: Float) -> float:
-        """From the toe that is further in front at take-off to the heel that is further behind at landing."""
-        toes, heels = (
-            [self.coco_m(frame / RATE_HZ)[coco_feet.INDEX[f"{side}_{end}"], :2] @ along for side in ("left", "right")]
-            for frame, end in ((off, "big_toe"), (on, "heel"))
-        )
-        return float(min(heels) - max(toes))
+        """As by the tape: from the foremost skin of the feet at take-off to where the foot further behind ends at landing."""
+        body = self.subject.body
+        feet = [_foot(body, side) for side in ("left", "right")]
+        at_off, at_on = (body.vertices_m(self.motion.pose_at(frame / RATE_HZ))[:, :2] @ along for frame in (off, on))
+        return float(min(at_on[foot].min() for foot in feet) - max(at_off[foot].max() for foot in feet))
 
 
 @dataclass(frozen=True)
@@ -99,6 +100,13 @@ class Jump:
     top_s: float
     rise_m: float
     reach_m: float
+
+
+def _foot(body: Body, side: str) -> Bool:
+    """(V,) which vertices are a foot's."""
+    joints = [smpl.INDEX[f"{side}_{joint}"] for joint in ("ankle", "foot")]
+    skin = body.model.skin
+    return np.asarray((np.isin(skin.joints, joints) * skin.weights).sum(axis=1) > _MOSTLY)
 
 
 def truth_of(plan: Plan) -> Truth:

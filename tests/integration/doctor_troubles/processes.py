@@ -8,7 +8,7 @@ from pathlib import Path
 
 from services.doctor.finding import Examined
 from tests.integration.box import Box, HealthWatch
-from tests.integration.doctor_troubles.running_box import all_well, running, until_told, wait_for
+from tests.integration.doctor_troubles.running_box import STANDING, all_well, running, until_told, wait_for
 from tests.integration.doctor_troubles.trouble import Trouble
 
 
@@ -16,10 +16,11 @@ def _stop(*names: str) -> Callable[[Box], None]:
     """Stop processes while the supervisor, who would see to it, is stopped too."""
 
     def stage(box: Box) -> None:
-        all_well(box)
+        with HealthWatch(box) as watch:
+            pids = [watch.wait_for(name, "ok").pid for name in names]  # The last ones that were started may be spares.
         box.process.send_signal(signal.SIGSTOP)
-        for name in names:
-            os.kill(box.pid(name), signal.SIGSTOP)
+        for pid in pids:
+            os.kill(pid, signal.SIGSTOP)
 
     return stage
 
@@ -36,7 +37,6 @@ def _kill_once(box: Box) -> None:
 
 def _kill_unseen(box: Box) -> None:
     """The supervisor cannot start it anew."""
-    all_well(box)
     box.process.send_signal(signal.SIGSTOP)
     os.kill(box.pid("edge-b"), signal.SIGKILL)
 
@@ -72,13 +72,15 @@ PROCESSES: dict[str, Trouble] = {
         "read what it said",
         "warning",
     ),
-    "a process is missing": Trouble(running(_kill_unseen), "edge-b", "edge-b is missing", "it may be starting"),
+    "a process is missing": Trouble(STANDING.stage(_kill_unseen), "edge-b", "edge-b is missing", "it may be starting"),
     "a camera's process hangs": Trouble(
-        running(_stop("edge-a")), "edge-a", r"edge-a \(process \d+\) is stopped", r"kill -CONT \d+"
+        STANDING.stage(_stop("edge-a")), "edge-a", r"edge-a \(process \d+\) is stopped", r"kill -CONT \d+"
     ),
-    "the router hangs": Trouble(running(_stop("fusion")), "fusion", r"fusion \(process \d+\) is stopped", r"kill -CONT \d+"),
-    "the supervisor hangs": Trouble(running(_stop()), "supervisor", r"supervisor \(process \d+\) is stopped", "kill -CONT"),
-    "the page hangs": Trouble(running(_stop("tablet")), "tablet", r"the page at port \d+ does not answer", "wait some seconds"),
+    "the router hangs": Trouble(STANDING.stage(_stop("fusion")), "fusion", r"fusion \(process \d+\) is stopped", r"kill -CONT \d+"),
+    "the supervisor hangs": Trouble(STANDING.stage(_stop()), "supervisor", r"supervisor \(process \d+\) is stopped", "kill -CONT"),
+    "the page hangs": Trouble(
+        STANDING.stage(_stop("tablet")), "tablet", r"the page at port \d+ does not answer", "wait some seconds"
+    ),
     "the log cannot be written": Trouble(
         log_that_cannot_be_written, "log", r"nothing is kept in .*kinebox\.log: File exists", "make room on its disk"
     ),

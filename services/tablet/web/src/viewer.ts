@@ -4,7 +4,7 @@ import { Link } from './connection/link';
 import { makerOf, phaseOf, type Phase } from './connection/phase';
 import { complete, showsSomebody, standing, unsure, type Pose } from './figure/pose';
 import { JointState, MotionFrameError, readMotionFrame, type MotionFrame } from './protocol/motionFrame';
-import type { Attempt, Status, Teaching } from './protocol/messages';
+import type { Attempt, AttemptList, Status, Teaching } from './protocol/messages';
 import { Replays } from './replay/replays';
 import type { ReplayShow } from './replay/show.svelte';
 import type { Lesson } from './state/lesson.svelte';
@@ -16,6 +16,7 @@ import { suggest } from './text/words.svelte';
 /** Words change at most so often: nobody can read faster. */
 const WORDS_PERIOD_MS = 250;
 const DELAY_GAIN = 0.15;
+const SECOND_MS = 1000;
 
 /** Joins the connection, the stage and the words. Holds the figure outside of the reactive state. */
 export class Viewer {
@@ -34,6 +35,10 @@ export class Viewer {
   private delayMs: number | null = null;
   private figures = 0;
   private turnMs = performance.now();
+  /** Since then the pupil has moved without a pause, as far as the box tells; null while he stands, or is not seen. */
+  private movesSinceMs: number | null = null;
+  /** By the box's clock, when it was heard last. */
+  private heardBoxUs = -Infinity;
   private counted = { figures: 0, atMs: performance.now() };
 
   /**
@@ -56,12 +61,17 @@ export class Viewer {
       },
       () => this.acknowledge(),
     );
-    this.replays = new Replays(show, this.stage, () => this.showLive());
+    this.replays = new Replays(
+      show,
+      this.stage,
+      () => this.showLive(),
+      () => (this.room.unreadable += 1),
+    );
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
     this.link = new Link(`${scheme}://${location.host}/ws`, {
       motion: (buffer) => this.receive(buffer),
       status: (status) => this.learn(status),
-      attempt: (attempt) => this.note(attempt),
+      attempts: (list) => this.note(list),
       changed: () => this.changed(),
     });
     // Who turns the view looks at the replay.
@@ -80,8 +90,25 @@ export class Viewer {
 
   /** What pupils shall do from now on; null is whatever the box recognises. */
   choose(activity: string | null): void {
-    this.lesson.ask(activity, performance.now());
+    this.lesson.activity.ask(activity, performance.now());
     this.link.choose(activity);
+  }
+
+  /** Who is up from now on; null is nobody who is named. */
+  call(pupil: string | null): void {
+    this.lesson.pupil.ask(pupil, performance.now());
+    this.link.call(pupil);
+  }
+
+  /** Whose an attempt was after all. The box tells all tablets. */
+  correct(attempt: number, pupil: string | null): void {
+    this.lesson.correct(attempt, pupil, performance.now());
+    this.link.correct(attempt, pupil);
+  }
+
+  /** The list of attempts begins anew, on all tablets. */
+  beginAnew(): void {
+    this.link.beginAnew();
   }
 
   /** Shows an attempt again, because somebody wants to see it. */
@@ -105,22 +132,44 @@ export class Viewer {
 
   private learn(status: Status): void {
     const nowMs = performance.now();
-    const moved = this.room.status?.evaluation.state === 'moving';
+    this.compareClocks(status.box_time_us);
     this.room.status = status;
-    this.lesson.confirm(status.evaluation.activity, nowMs);
-    if (!moved && status.evaluation.state === 'moving' && this.replays.isOver(nowMs)) this.backToLive();
+    this.lesson.activity.confirm(status.evaluation.activity);
+    this.lesson.pupil.confirm(status.evaluation.pupil);
+    this.movesSinceMs = status.evaluation.state === 'moving' ? (this.movesSinceMs ?? nowMs) : null;
+    if (this.movesSinceMs !== null && this.replays.isOver(nowMs, this.movesSinceMs)) this.giveWay();
     this.lateness.noteStatus(status, nowMs);
     this.search.note(status, nowMs);
     this.say();
   }
 
-  /** An attempt ended, or the box tells of those that did before. */
-  private note(attempt: Attempt): void {
+  /** The pupil tries again. Words of an earlier attempt that somebody reads stay until the next one has ended. */
+  private giveWay(): void {
+    if (this.lesson.isNewest) this.lesson.show(null);
+    this.replays.stop();
+  }
+
+  /** The box told of its list: an attempt ended, one was given to another pupil, the list began anew, or this page has just come. */
+  private note(list: AttemptList): void {
     const nowMs = performance.now();
     const boxMs = this.link.clock.boxMs(nowMs) ?? (this.room.status ? this.room.status.box_time_us / 1000 : null);
-    if (!this.lesson.note(attempt, boxMs) || this.replays.held(nowMs)) return;
-    this.lesson.show(attempt.id);
-    void this.replays.start(attempt);
+    const news = this.lesson.take(list, boxMs, this.room.status?.replay?.speed ?? 1);
+    const listed = new Set(list.attempts.map(({ id }) => id));
+    this.replays.keepOnly(listed);
+    if (this.show.id !== null && !listed.has(this.show.id)) this.backToLive();
+    if (news === null || this.replays.held(nowMs)) return;
+    this.lesson.show(news.id);
+    void this.replays.start(news);
+  }
+
+  /** The clock of a box goes back when it was started again, and then gives the same names to other attempts. */
+  private compareClocks(boxUs: number): void {
+    if (boxUs < this.heardBoxUs) {
+      this.lesson.forget();
+      this.replays.keepOnly(new Set());
+      this.backToLive();
+    }
+    this.heardBoxUs = boxUs;
   }
 
   private async learnWords(): Promise<void> {
@@ -144,6 +193,7 @@ export class Viewer {
     // A page that nobody sees is called seldom on purpose.
     if (!document.hidden) this.lateness.noteTurn(nowMs - this.turnMs - WORDS_PERIOD_MS, nowMs);
     this.turnMs = nowMs;
+    this.lesson.elapse(nowMs);
     this.say();
   }
 
@@ -210,12 +260,10 @@ export class Viewer {
     this.waiting = null;
     this.droppedMs = -Infinity;
     if (this.link.connected) {
-      this.lesson.forget(); // the box tells anew
-      this.replays.forget();
+      this.lesson.reconnect();
       void this.learnWords();
     } else {
-      this.room.status = null; // what was known of the cameras is no longer
-      this.backToLive();
+      this.room.status = null; // what was known of the cameras is no longer; of attempts it is
     }
     this.freshness.reset();
     this.lateness.reset();
@@ -244,8 +292,15 @@ export class Viewer {
     // What is played is as old as its lesson.
     this.room.delayMs = phase === 'live' && !this.room.status?.replay ? this.delayMs : null;
     this.room.roundTripMs = this.link.clock.roundTripMs;
+    this.tellTime(nowMs);
     this.countFigures(nowMs);
     this.expose(phase);
+  }
+
+  /** By the second: ages are told in minutes. */
+  private tellTime(nowMs: number): void {
+    const boxMs = this.link.clock.boxMs(nowMs);
+    if (boxMs !== null && Math.abs(boxMs - (this.room.boxMs ?? -Infinity)) >= SECOND_MS) this.room.boxMs = boxMs;
   }
 
   private countFigures(nowMs: number): void {

@@ -34,6 +34,8 @@ describe("an attempt's replay", () => {
     expect([...replay.levels]).toEqual(said.colours.flat().map((colour, i) => (seen[i] ? colour : Level.Grey)));
     const standard = said.standard_mm.flat().flatMap((place) => place ?? [NaN, NaN, NaN]);
     expect(mm(replay.standardM)).toEqual(standard);
+    const known = said.standard_mm.flat().map((place) => (place === null ? JointState.Unknown : JointState.Seen));
+    expect([...replay.standardStates]).toEqual(known);
   });
 
   it('is never coloured where a joint was not seen, whatever the box says', () => {

@@ -1,12 +1,12 @@
 import { describe, expect, it } from 'vitest';
-import type { Attempt, AttemptMeasure, Status } from '../src/protocol/messages';
+import type { Attempt, AttemptList, AttemptMeasure, Status } from '../src/protocol/messages';
 import { isJudging } from '../src/state/evaluation';
 import { gauge } from '../src/state/gauge';
-import { Lesson } from '../src/state/lesson.svelte';
+import { ageMin, Lesson } from '../src/state/lesson.svelte';
 
 const attempt = (id: number, ended_ms = 1000 * id): Attempt => ({
-  type: 'attempt',
   id,
+  number: id,
   action: 'squat',
   by: 'chosen',
   handed: 'right',
@@ -17,68 +17,139 @@ const attempt = (id: number, ended_ms = 1000 * id): Attempt => ({
   cue: null,
   cue_certainty: null,
   praise: null,
+  silence: 'fine',
   measures: [],
+  pupil: null,
 });
+const list = (...attempts: Attempt[]): AttemptList => ({ type: 'attempts', attempts, earlier: 'listed' });
+/** The box's list, the oldest first. */
+const listed = (...ids: number[]): AttemptList => list(...ids.map((id) => attempt(id)));
 
 describe('attempts', () => {
-  it('are listed with the newest first, counted from the first', () => {
+  it('are listed with the newest first and have the numbers of the box', () => {
     const lesson = new Lesson();
-    for (const id of [1, 2, 3]) lesson.note(attempt(id), null);
-    expect(lesson.attempts.map(({ number, attempt: { id } }) => [number, id])).toEqual([
-      [3, 3],
-      [2, 2],
-      [1, 1],
+    lesson.take(
+      list({ ...attempt(1), number: 51 }, { ...attempt(2), number: null }, { ...attempt(3), number: 52 }),
+      null,
+    );
+    expect(lesson.attempts.map(({ id, number }) => [id, number])).toEqual([
+      [3, 52],
+      [2, null],
+      [1, 51],
     ]);
-    expect(lesson.shown?.number).toBe(3);
+    expect(lesson.shown?.id).toBe(3);
+  });
+
+  it('are those that the box told of last, whatever was known before', () => {
+    const lesson = new Lesson();
+    expect(lesson.earlier).toBeNull();
+    lesson.take(listed(1, 2, 3), null);
+    lesson.take({ ...listed(3, 4), earlier: 'recorded' }, null);
+    expect(lesson.attempts.map(({ id }) => id)).toEqual([4, 3]);
+    lesson.take(listed(), null);
+    expect([lesson.attempts, lesson.shown, lesson.earlier]).toEqual([[], null, 'listed']);
   });
 
   it('are news when they have just ended, once, and by the clock of the box', () => {
     const lesson = new Lesson();
-    expect(lesson.note(attempt(1), 2000)).toBe(true);
-    expect(lesson.note(attempt(1), 2000)).toBe(false);
-    expect(lesson.note(attempt(2), 600_000)).toBe(false);
-    expect(lesson.note(attempt(3), null)).toBe(false);
-    expect(lesson.attempts).toHaveLength(3);
+    expect(lesson.take(listed(1), 2000)?.id).toBe(1);
+    expect(lesson.take(listed(1), 2000)).toBeNull();
+    expect(lesson.take(listed(1, 2), 600_000)).toBeNull();
+    expect(lesson.take(listed(1, 2, 3), null)).toBeNull();
+    expect(lesson.take(listed(), 3000)).toBeNull();
   });
 
-  it('are kept as long as the box keeps them, and keep their numbers', () => {
-    const lesson = new Lesson();
-    for (let id = 1; id <= 60; id++) lesson.note(attempt(id), null);
-    expect(lesson.attempts).toHaveLength(50);
-    expect(lesson.attempts.at(-1)?.number).toBe(11);
+  it('are no news to a page that has just come, but for one that has just ended', () => {
+    expect(new Lesson().take(listed(1, 2, 3), 600_000)).toBeNull();
+    expect(new Lesson().take(listed(1, 2, 3), 4000)?.id).toBe(3);
   });
 
-  it('that are looked at stay so when another one ends', () => {
+  it('are news for longer where a lesson is played slowly, since all takes longer to be told there', () => {
+    // A second of the pupil after its end are ten at a tenth of his speed.
+    expect(new Lesson().take(listed(1), 11_000, 0.1)?.id).toBe(1);
+    expect(new Lesson().take(listed(2), 12_000, 1)).toBeNull();
+    expect(new Lesson().take(listed(3), 12_000, 8)).toBeNull();
+  });
+
+  it('that are told of again with another pupil are no news', () => {
     const lesson = new Lesson();
-    lesson.note(attempt(1), null);
+    lesson.take(listed(1, 2), 1000);
+    expect(lesson.take(list({ ...attempt(1), pupil: 'B12' }, { ...attempt(2), pupil: '7' }), 1000)).toBeNull();
+    expect(lesson.attempts.map(({ pupil }) => pupil)).toEqual(['7', 'B12']);
+  });
+
+  it('that are looked at stay so when another one ends, and as long as they are on the list', () => {
+    const lesson = new Lesson();
+    lesson.take(listed(1), null);
     lesson.show(1);
-    lesson.note(attempt(2), null);
-    expect(lesson.shown?.attempt.id).toBe(1);
-    expect(lesson.isNewest).toBe(false);
-    lesson.show(null);
-    expect(lesson.shown?.attempt.id).toBe(2);
-    expect(lesson.isNewest).toBe(true);
+    lesson.take(listed(1, 2), null);
+    expect([lesson.shown?.id, lesson.isNewest]).toEqual([1, false]);
+    lesson.reconnect();
+    lesson.take(listed(1, 2, 3), null);
+    expect([lesson.shown?.id, lesson.isNewest]).toEqual([1, false]);
+    lesson.take(listed(2, 3), null);
+    expect([lesson.shown?.id, lesson.isNewest]).toEqual([3, true]);
+  });
+
+  it('stay known without a connection, and are forgotten with the run of the box that they are of', () => {
+    const lesson = new Lesson();
+    lesson.take(listed(1, 2), null);
+    lesson.reconnect();
+    expect(lesson.attempts).toHaveLength(2);
+    lesson.forget();
+    expect([lesson.attempts, lesson.earlier]).toEqual([[], null]);
+  });
+
+  it.each([
+    [1000, 0],
+    [60_999, 0],
+    [61_000, 1],
+    [1_900_000, 31],
+    [0, 0],
+  ])('that ended at one second are at %d ms %d minutes old', (boxMs, minutes) => {
+    expect(ageMin(attempt(1), boxMs)).toBe(minutes);
+  });
+
+  it('have no age while the clock of the box is not known', () => {
+    expect([ageMin(attempt(1), null), ageMin(null, 9e9)]).toEqual([0, 0]);
   });
 });
 
-describe('the activity', () => {
-  it('is what was asked for until the box has confirmed it', () => {
+describe('what was asked of the box', () => {
+  it('is an activity until the box has confirmed it', () => {
     const lesson = new Lesson();
-    expect(lesson.activity('run')).toBe('run');
-    lesson.ask('squat', 0);
-    expect(lesson.activity('run')).toBe('squat');
-    lesson.confirm('run', 500); // a status that was under way
-    expect(lesson.activity('run')).toBe('squat');
-    lesson.confirm('squat', 900);
-    expect(lesson.activity('run')).toBe('run');
+    expect(lesson.activity.shown('run')).toBe('run');
+    lesson.activity.ask('squat', 0);
+    expect(lesson.activity.shown('run')).toBe('squat');
+    lesson.activity.confirm('run'); // a status that was under way
+    expect(lesson.activity.shown('run')).toBe('squat');
+    lesson.activity.confirm('squat');
+    expect(lesson.activity.shown('run')).toBe('run');
   });
 
-  it('is what the box says when it does not do what it was asked for', () => {
+  it('is refused when its time is over, whatever it was, also if the box says nothing at all', () => {
     const lesson = new Lesson();
-    lesson.ask(null, 0);
-    expect(lesson.activity('run')).toBeNull();
-    lesson.confirm('run', 60_000);
-    expect(lesson.activity('run')).toBe('run');
+    lesson.take(listed(1), null);
+    lesson.activity.ask(null, 0);
+    lesson.pupil.ask('7', 0);
+    lesson.correct(1, '8', 0);
+    const states = () => [lesson.activity, lesson.pupil, lesson.owner].map(({ state }) => state);
+    lesson.elapse(1000);
+    expect(states()).toEqual(['pending', 'pending', 'pending']);
+    lesson.elapse(60_000);
+    expect(states()).toEqual(['refused', 'refused', 'refused']);
+    expect(lesson.activity.shown('run')).toBe('run');
+    expect([lesson.corrected?.number, lesson.owner.value]).toEqual([1, '8']);
+  });
+
+  it('is a correction that is done when the attempt is told of again, and no other', () => {
+    const lesson = new Lesson();
+    lesson.take(listed(1, 2), null);
+    lesson.correct(1, '8', 0);
+    lesson.take(list(attempt(1), { ...attempt(2), pupil: '8' }), null);
+    expect(lesson.owner.state).toBe('pending');
+    lesson.take(list({ ...attempt(1), pupil: '8' }, attempt(2)), null);
+    expect(lesson.owner.state).toBe('settled');
   });
 });
 

@@ -1,8 +1,9 @@
+import { readFileSync } from 'node:fs';
 import { Color, Mesh } from 'three';
 import { describe, expect, it } from 'vitest';
 import { complete, showsSomebody, standing, unsure } from '../src/figure/pose';
 import { Figure } from '../src/figure/figure';
-import { BODY, DRAWN, LEFT, RIGHT, SKIN, VISOR } from '../src/figure/materials';
+import { ALONG, BODY, DRAWN, LEFT, RIGHT, SKIN, VISOR } from '../src/figure/materials';
 import { Part } from '../src/figure/part';
 import { FACE, Joint, STANDING_M } from '../src/figure/skeleton';
 import { Level } from '../src/protocol/attemptReplay';
@@ -106,6 +107,15 @@ describe('the colours', () => {
   });
 });
 
+/** Everything that is drawn of a figure. */
+function meshes(figure: Figure): Mesh[] {
+  const found: Mesh[] = [];
+  figure.group.traverse((part) => {
+    if (part instanceof Mesh) found.push(part);
+  });
+  return found;
+}
+
 describe('the judged figure', () => {
   const levelsOf = (level: number): Uint8Array => new Uint8Array(17).fill(level);
 
@@ -115,11 +125,22 @@ describe('the judged figure', () => {
     expect(figure.colouredShare).toBe(0);
   });
 
-  it('colours what was judged, and neither hands nor feet', () => {
+  it('colours all that can be judged, and gives hands and feet no colour that means something', () => {
     const figure = new Figure();
     figure.showJudged(complete(seen(), standing()), levelsOf(Level.Green));
-    expect(figure.colouredShare).toBeGreaterThan(0.8);
-    expect(figure.colouredShare).toBeLessThan(1);
+    expect(figure.colouredShare).toBe(1);
+    const drawn = meshes(figure).filter((part) => part.material === ALONG);
+    expect(drawn).toHaveLength(4);
+    expect(ALONG.color.getHSL({ h: 0, s: 0, l: 0 }).s).toBeGreaterThan(0.3); // grey would be "not sure"
+  });
+
+  it('leaves a hand as unsure as the wrist that it is drawn from', () => {
+    const figure = new Figure();
+    const levels = levelsOf(Level.Green);
+    levels[Joint.LeftWrist] = Level.Grey;
+    levels[Joint.RightElbow] = Level.Grey;
+    figure.showJudged(complete(seen(), standing()), levels);
+    expect(meshes(figure).filter((part) => part.material === ALONG)).toHaveLength(3);
   });
 
   it('shows each end of a limb as good as the joint there', () => {
@@ -129,13 +150,15 @@ describe('the judged figure', () => {
     expect(thigh.levels(levels).slice(0, 2)).toEqual([Level.Green, Level.Red]);
   });
 
-  it('takes a head for as good as the worst of its points, of which two must be known', () => {
+  it('takes a head for as bad as the worst of its points, and for good if two of them are', () => {
+    // `tests/unit/test_report_page.py` reads the same table.
+    const table = new URL('../../../../tests/golden/head/levels.json', import.meta.url);
+    const cases = JSON.parse(readFileSync(table, 'utf-8')) as { points: number[]; head: number }[];
     const head = new Part(new Mesh(), SKIN, FACE, 'face');
-    const levels = levelsOf(Level.Grey);
-    levels[Joint.Nose] = Level.Green;
-    expect(head.levels(levels)[0]).toBe(Level.Grey);
-    levels[Joint.LeftEar] = Level.Yellow;
-    expect(head.levels(levels)[0]).toBe(Level.Yellow);
+    const shown = cases.map(
+      ({ points }) => head.levels(Uint8Array.from([...points, ...new Array<number>(12).fill(0)]))[0],
+    );
+    expect(shown).toEqual(cases.map((each) => each.head));
   });
 
   it('is blue again when it is live again', () => {

@@ -1,10 +1,9 @@
 import { describe, expect, it } from 'vitest';
-import { STANDING_M } from '../src/figure/skeleton';
-import { Joint } from '../src/figure/skeleton';
+import { FACE, Joint, STANDING_M } from '../src/figure/skeleton';
 import { JOINT_COUNT, JointState } from '../src/protocol/motionFrame';
 import { Level, type AttemptReplay } from '../src/protocol/attemptReplay';
 import { Player } from '../src/replay/player';
-import { mirrored, momentAt, moved, whole } from '../src/replay/scene';
+import { hasStandard, mirrored, momentAt, moved, whole } from '../src/replay/scene';
 import { facingRad } from '../src/stage/framing';
 
 /** Somebody who stands, and is half a metre further with each frame. */
@@ -22,7 +21,17 @@ function walk(frames = 4): AttemptReplay {
     states: new Uint8Array(frames * JOINT_COUNT).fill(JointState.Seen),
     levels: new Uint8Array(frames * JOINT_COUNT).fill(Level.Green),
     standardM: positionsM.slice(),
+    standardStates: new Uint8Array(frames * JOINT_COUNT).fill(JointState.Seen),
   };
+}
+
+/** The standard is not known there. */
+function forget(replay: AttemptReplay, frame: number, ...joints: number[]): void {
+  for (const joint of joints) {
+    const place = frame * JOINT_COUNT + joint;
+    replay.standardM.fill(NaN, 3 * place, 3 * place + 3);
+    replay.standardStates[place] = JointState.Unknown;
+  }
 }
 
 describe('the player', () => {
@@ -83,11 +92,35 @@ describe('a moment of an attempt', () => {
     expect(momentAt(replay, -1).pose.positionsM[0]).toBeCloseTo(STANDING_M[0]!, 5);
   });
 
-  it('has no standard where a joint of it is not known', () => {
+  it('shows a standard that has no face, as imported ones may, with a head that is not known', () => {
     const replay = walk();
-    replay.standardM[3 * Joint.LeftKnee] = NaN;
-    expect(momentAt(replay, 0).standard).toBeNull();
-    expect(momentAt(replay, 0.2).standard).not.toBeNull();
+    for (let frame = 0; frame < replay.frames; frame++) forget(replay, frame, ...FACE);
+    const shown = whole(replay);
+    expect(hasStandard(shown)).toBe(true);
+    for (const at of [0, 0.12, 0.3]) {
+      const { standard } = momentAt(shown, at);
+      expect(standard?.positionsM.every(Number.isFinite)).toBe(true);
+      expect(standard?.states[Joint.Nose]).toBe(JointState.Unknown);
+      expect(standard?.states[Joint.LeftKnee]).toBe(JointState.Seen);
+    }
+  });
+
+  it('keeps a knee of the standard that is missing for a while on its hip, and unknown', () => {
+    const replay = walk();
+    forget(replay, 2, Joint.LeftKnee);
+    const { standard } = momentAt(whole(replay), 0.2);
+    expect(standard?.positionsM[3 * Joint.LeftKnee]).toBeCloseTo(STANDING_M[3 * Joint.LeftKnee]! + 1, 5);
+    expect(standard?.states[Joint.LeftKnee]).toBe(JointState.Unknown);
+  });
+
+  it('has a standard in some frame or in none, whatever the first one is like', () => {
+    const [late, never] = [walk(), walk()];
+    forget(late, 0, ...Object.values(Joint));
+    for (let frame = 0; frame < never.frames; frame++) forget(never, frame, ...Object.values(Joint));
+    expect([whole(late), whole(never)].map(hasStandard)).toEqual([true, false]);
+    expect(momentAt(whole(late), 0).standard).toBeNull();
+    expect(momentAt(whole(late), 0.1).standard).not.toBeNull();
+    expect(momentAt(whole(never), 0.1).standard).toBeNull();
   });
 
   it('keeps an unknown wrist on its arm, and unknown', () => {

@@ -1,7 +1,9 @@
+import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
 import { de } from '../src/text/de';
 import { en } from '../src/text/en';
 import { es } from '../src/text/es';
+import { wholeUnit } from '../src/text/format';
 import { spoken } from '../src/text/words.svelte';
 import { zh } from '../src/text/zh';
 
@@ -33,7 +35,11 @@ describe.each(Object.entries({ de, es, zh }))('the page in %s', (_code, words) =
     expect(words.cameras.then.lost([1])).toContain('1');
     expect(words.staleFor(7)).toContain('7');
     expect(words.staleFor(0)).toBe(words.phases.stale.title);
-    expect(words.attempts.show(3, 'X', '82')).toMatch(/3.*X.*82/);
+    expect(words.attempts.show(3, 'X', '82', 'B12')).toMatch(/3.*X.*B12.*82/);
+    expect(words.attempts.show(3, 'X', null, null)).not.toContain('null');
+    for (const say of [words.pupil.is, words.pupil.nextIs, words.pupil.change]) expect(say('B12')).toContain('B12');
+    expect(words.pupil.correct(4)).toContain('4');
+    expect(words.refused('B12')).toContain('B12');
     expect(words.replay.keyframes).toHaveLength(4);
   });
 });
@@ -46,9 +52,47 @@ describe('numbers', () => {
   });
 
   it('have as many digits as they are sure of', () => {
-    expect(en.formats.estimate(24.31, 4.2, 'deg')).toEqual({ value: '24', sigma: '4', unit: '°' });
-    expect(en.formats.estimate(1.234, 0.2, 'm_s')).toEqual({ value: '1.2', sigma: '0.2', unit: ' m/s' });
-    expect(de.formats.estimate(0.4812, 0.03, 's')).toEqual({ value: '0,48', sigma: '0,03', unit: ' s' });
+    expect(en.formats.estimate(24.31, 4.2, 'deg')).toEqual({ value: '24', sigma: '4', unit: '°', of: '' });
+    expect(en.formats.estimate(1.234, 0.2, 'm_s')).toEqual({ value: '1.2', sigma: '0.2', unit: ' m/s', of: '' });
+    expect(de.formats.estimate(0.4812, 0.03, 's')).toEqual({ value: '0,48', sigma: '0,03', unit: ' s', of: '' });
+  });
+
+  it('are written as on paper', () => {
+    // `tests/unit/test_report_page.py` reads the same table.
+    const table = new URL('../../../../tests/golden/numbers/estimates.json', import.meta.url);
+    const cases = JSON.parse(readFileSync(table, 'utf-8')) as {
+      value: number;
+      sigma: number;
+      unit: string;
+      text: string;
+    }[];
+    const written = cases.map((each) => {
+      const { value, sigma, unit } = en.formats.estimate(each.value, each.sigma, each.unit);
+      return `${value} ± ${sigma}${unit}`;
+    });
+    expect(written).toEqual(cases.map(({ text }) => text));
+  });
+
+  it('say of a percentage what it is of', () => {
+    const units = [en, de, es, zh].map(({ formats }) => wholeUnit(formats.estimate(12, 3, 'pct')));
+    expect(units).toEqual([' % of height', ' % der Größe', ' % de estatura', ' % 身高']);
+    expect(wholeUnit(en.formats.estimate(12, 3, 'deg'))).toBe('°');
+  });
+
+  it('say how long ago something was', () => {
+    expect([en, de, es].map(({ formats }) => formats.ago(12))).toEqual([
+      '12 minutes ago',
+      'vor 12 Minuten',
+      'hace 12 minutos',
+    ]);
+    expect(zh.formats.ago(12)).toMatch(/^12\s?分钟前$/);
+    expect([1, 59, 60, 119, 180].map(en.formats.ago)).toEqual([
+      '1 minute ago',
+      '59 minutes ago',
+      '1 hour ago',
+      '1 hour ago',
+      '3 hours ago',
+    ]);
   });
 
   it('keep a unit that this page does not know', () => {

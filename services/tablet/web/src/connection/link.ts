@@ -1,4 +1,14 @@
-import { readServerMessage, type Ack, type Attempt, type Choose, type Ping, type Status } from '../protocol/messages';
+import {
+  readServerMessage,
+  type Ack,
+  type Anew,
+  type AttemptList,
+  type Choose,
+  type Correction,
+  type Ping,
+  type Status,
+  type Turn,
+} from '../protocol/messages';
 import { BoxClock } from './boxClock';
 import { reconnectDelayMs } from './reconnect';
 
@@ -11,7 +21,8 @@ export interface LinkEvents {
   /** A binary motion frame came. It counts as under way until `acknowledgeMotions`. */
   motion(buffer: ArrayBuffer): void;
   status(status: Status): void;
-  attempt(attempt: Attempt): void;
+  /** The list of attempts, whole: once on connecting, and when it changes. */
+  attempts(list: AttemptList): void;
   /** Connected, disconnected, or another attempt failed. */
   changed(): void;
 }
@@ -60,6 +71,21 @@ export class Link {
   /** What pupils shall do from now on; null is whatever the box recognises. */
   choose(activity: string | null): void {
     this.send({ type: 'choose', activity });
+  }
+
+  /** Who is up from now on; null is nobody who is named. */
+  call(pupil: string | null): void {
+    this.send({ type: 'turn', pupil });
+  }
+
+  /** Whose an attempt was after all. */
+  correct(attempt: number, pupil: string | null): void {
+    this.send({ type: 'correction', attempt, pupil });
+  }
+
+  /** The list of attempts shall begin anew. */
+  beginAnew(): void {
+    this.send({ type: 'anew' });
   }
 
   private open(): void {
@@ -111,8 +137,8 @@ export class Link {
       this.statuses += 1;
       this.acknowledge();
       this.events.status(message);
-    } else if (message?.type === 'attempt') {
-      this.events.attempt(message);
+    } else if (message?.type === 'attempts') {
+      this.events.attempts(message);
     } else if (message?.type === 'pong') {
       this.receivePong(message.id, message.box_time_us / 1000);
     }
@@ -147,7 +173,7 @@ export class Link {
     this.send({ type: 'ack', motions: this.motions, statuses: this.statuses });
   }
 
-  private send(message: Ack | Choose | Ping): void {
+  private send(message: Ack | Anew | Choose | Correction | Ping | Turn): void {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 }

@@ -5,7 +5,7 @@ import { Foot, Hand } from './extremities';
 import { Head } from './head';
 import { judged } from './judged';
 import { FOREARM, Limb, SHANK, THIGH, UPPER_ARM, mesh } from './limb';
-import { BODY, DRAWN, GHOST, GHOST_INSIDE, LEFT, RIGHT, SKIN, VISOR, type Palette } from './materials';
+import { ALONG, BODY, DRAWN, GHOST, GHOST_INSIDE, LEFT, RIGHT, SKIN, VISOR, type Palette } from './materials';
 import { Part, lookOf } from './part';
 import type { Pose } from './pose';
 import { FACE, Joint, TRUNK } from './skeleton';
@@ -20,7 +20,7 @@ const SCALE_GAIN = 0.05;
 /** The pupil in 3D, made of the 17 joints. World frame: metres, z up. */
 export class Figure {
   readonly group = new Group();
-  /** Share of the parts that are drawn in colour: 0 when nothing is believed. */
+  /** Share of the parts that are drawn in colour, of those that can be: 0 when nothing is believed. */
   colouredShare = 0;
 
   private readonly trunk = new Trunk();
@@ -88,18 +88,22 @@ export class Figure {
     this.place(pose);
     this.insides.visible = false;
     for (const part of this.parts) part.mesh.material = part.palette[lookOf(part.state(pose.states))];
-    this.count((part) => part.state(pose.states) === JointState.Seen);
+    this.count(this.parts, (part) => part.state(pose.states) === JointState.Seen);
   }
 
   /** Puts the figure into a pose whose joints have 17 levels, from grey to red. */
   showJudged(pose: Pose, levels: Uint8Array): void {
     this.place(pose);
+    const coloured = (part: Part): boolean => part.levels(levels).some((level) => level !== Level.Grey);
     for (const part of this.parts) {
       part.judged ??= judged();
       part.judged.levels.fromArray(part.levels(levels));
-      part.mesh.material = part.judged.material;
+      part.mesh.material = !part.isJudged && coloured(part) ? ALONG : part.judged.material;
     }
-    this.count((part) => part.levels(levels).some((level) => level !== Level.Grey));
+    this.count(
+      this.parts.filter((part) => part.isJudged),
+      coloured,
+    );
   }
 
   /** Puts the figure into a pose, seen through. */
@@ -145,8 +149,8 @@ export class Figure {
     return this.scale;
   }
 
-  private count(coloured: (part: Part) => boolean): void {
-    this.colouredShare = this.parts.filter(coloured).length / this.parts.length;
+  private count(parts: Part[], coloured: (part: Part) => boolean): void {
+    this.colouredShare = parts.filter(coloured).length / parts.length;
   }
 
   private listParts(): Part[] {

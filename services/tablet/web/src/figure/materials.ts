@@ -22,6 +22,8 @@ export const SKIN = palette(0x5490da);
 export const VISOR = palette(0x1c3763);
 /** Hands and feet are drawn along, not measured. Dark, but no grey: a forearm that was seen must not end in a hand that looks unsure. */
 export const DRAWN = palette(0x1b4390);
+/** The same where the figure is judged: of no colour that means a judgement, and no grey, which is "not sure". */
+export const ALONG = new MeshLambertMaterial({ color: 0xe6d3b8 });
 
 /**
  * The standard where it stands in the pupil's place: seen through, and always behind him, as nothing may change the colours on the

@@ -1,4 +1,4 @@
-import { JOINT_COUNT, JointState, type MotionFrame } from '../protocol/motionFrame';
+import { JOINT_COUNT, JointState } from '../protocol/motionFrame';
 import { PARENT, STANDING_M, TRUNK } from './skeleton';
 
 /** A place for every joint and how far it may be believed. */
@@ -18,7 +18,7 @@ export function unsure(pose: Pose): Pose {
 }
 
 /** Whether a frame shows anybody: without one joint of the trunk there is nothing to hang a figure on. */
-export function showsSomebody(frame: MotionFrame): boolean {
+export function showsSomebody(frame: Pose): boolean {
   return TRUNK.some((joint) => frame.states[joint] !== JointState.Unknown);
 }
 

@@ -28,8 +28,10 @@ export interface AttemptReplay {
   states: Uint8Array;
   /** Frame by frame 17 levels; grey wherever the state is not "seen". */
   levels: Uint8Array;
-  /** The standard, in the same order as the positions and at the pupil's place; NaN where there is none. */
+  /** The standard, in the same order as the positions and at the pupil's place; NaN where nothing is known. */
   standardM: Float32Array;
+  /** Of the standard: seen where it has a place, unknown where it has none. */
+  standardStates: Uint8Array;
 }
 
 export class AttemptReplayError extends Error {}
@@ -59,14 +61,12 @@ export function readAttemptReplay(buffer: ArrayBuffer): AttemptReplay {
     states: new Uint8Array(count),
     levels: new Uint8Array(count),
     standardM: new Float32Array(3 * count),
+    standardStates: new Uint8Array(count),
   };
   if (replay.frameS === 0) throw new AttemptReplayError('frames follow one another in no time');
   for (let joint = 0; joint < count; joint++) readJoint(view, HEADER_BYTES + joint * JOINT_BYTES, joint, replay);
   const standardAt = HEADER_BYTES + count * JOINT_BYTES;
-  for (let i = 0; i < 3 * count; i++) {
-    const mm = view.getInt16(standardAt + 2 * i, true);
-    replay.standardM[i] = mm === ABSENT ? NaN : mm / 1000;
-  }
+  for (let joint = 0; joint < count; joint++) readStandard(view, standardAt + joint * STANDARD_BYTES, joint, replay);
   return replay;
 }
 
@@ -81,4 +81,14 @@ function readJoint(view: DataView, offset: number, joint: number, replay: Attemp
   replay.states[joint] = state;
   // Whatever the box may say: what was not seen has no colour.
   replay.levels[joint] = state === JointState.Seen ? level : Level.Grey;
+}
+
+function readStandard(view: DataView, offset: number, joint: number, replay: AttemptReplay): void {
+  const place = [0, 1, 2].map((axis) => view.getInt16(offset + 2 * axis, true));
+  const known = !place.includes(ABSENT);
+  replay.standardM.set(
+    place.map((mm) => (known ? mm / 1000 : NaN)),
+    3 * joint,
+  );
+  replay.standardStates[joint] = known ? JointState.Seen : JointState.Unknown;
 }

@@ -111,20 +111,19 @@ export interface components {
         };
         /**
          * Attempt
-         * @description An attempt that ended: sent once, and the newest of them when a page connects, the oldest first.
+         * @description An attempt that ended.
          */
         Attempt: {
-            /**
-             * Type
-             * @default attempt
-             * @constant
-             */
-            type: "attempt";
             /**
              * Id
              * @description its replay is at /api/attempts/{id}/replay as long as the attempt is listed
              */
             id: number;
+            /**
+             * Number
+             * @description counts the attempts of the lesson, as its report does; null: the lesson does not hold it
+             */
+            number: number | null;
             /** Action */
             action: string;
             /**
@@ -168,10 +167,20 @@ export interface components {
              */
             praise: string | null;
             /**
+             * Silence
+             * @description what it means that there is no cue; unseen: too little was seen, but for what is praised; null with a cue
+             */
+            silence: ("fine" | "unsure" | "unseen") | null;
+            /**
              * Measures
              * @description at most three, in the order in which they are shown
              */
             measures: components["schemas"]["AttemptMeasure"][];
+            /**
+             * Pupil
+             * @description code of who was up when it began, or as corrected; null: nobody who is named
+             */
+            pupil: string | null;
         };
         /**
          * AttemptMeasure
@@ -259,7 +268,7 @@ export interface components {
         };
         /**
          * EvaluationStatus
-         * @description What pupils are to do, and whether somebody does it.
+         * @description What pupils are to do, who is up, and whether somebody does it.
          */
         EvaluationStatus: {
             /**
@@ -272,6 +281,11 @@ export interface components {
              * @description null: not known, since the evaluation has yet to say so
              */
             activity_chosen_by: ("site" | "tablet") | null;
+            /**
+             * Pupil
+             * @description code of who is up; null: nobody who is named, or not known as `activity_chosen_by` says
+             */
+            pupil: string | null;
             /**
              * State
              * @description moving: an attempt seems to be under way; unknown: no pupil is seen, or the evaluation is not heard
@@ -553,6 +567,40 @@ export interface components {
             statuses: number;
         };
         /**
+         * Anew
+         * @description The list of attempts shall begin anew, on all pages. Not while a lesson is recorded: its numbers are those of the report.
+         */
+        Anew: {
+            /**
+             * Type
+             * @constant
+             */
+            type: "anew";
+        };
+        /**
+         * AttemptList
+         * @description The newest attempts since the list began: sent to a page that connects, and to all when it changes. It is whole each time.
+         */
+        AttemptList: {
+            /**
+             * Type
+             * @default attempts
+             * @constant
+             */
+            type: "attempts";
+            /**
+             * Attempts
+             * @description the oldest first
+             */
+            attempts: components["schemas"]["Attempt"][];
+            /**
+             * Earlier
+             * @description those from before the server was started again: they are listed like all others; recorded: some are not, but the lesson holds them; lost: whether there were any is not known
+             * @enum {string}
+             */
+            earlier: "listed" | "recorded" | "lost";
+        };
+        /**
          * Choose
          * @description What pupils shall do from now on.
          */
@@ -567,6 +615,27 @@ export interface components {
              * @description an action; null: whichever it is
              */
             activity: string | null;
+        };
+        /**
+         * Correction
+         * @description Whose an attempt was after all.
+         */
+        Correction: {
+            /**
+             * Type
+             * @constant
+             */
+            type: "correction";
+            /**
+             * Attempt
+             * @description its id
+             */
+            attempt: number;
+            /**
+             * Pupil
+             * @description code; null: nobody who is named
+             */
+            pupil: string | null;
         };
         /**
          * Ping
@@ -599,6 +668,22 @@ export interface components {
              * @description CLOCK_MONOTONIC of the box when it answered
              */
             box_time_us: number;
+        };
+        /**
+         * Turn
+         * @description Who is up from now on.
+         */
+        Turn: {
+            /**
+             * Type
+             * @constant
+             */
+            type: "turn";
+            /**
+             * Pupil
+             * @description code; null: nobody who is named
+             */
+            pupil: string | null;
         };
     };
     responses: never;

@@ -1,14 +1,28 @@
-import { readAttemptReplay, type AttemptReplay } from '../protocol/attemptReplay';
+import { AttemptReplayError, readAttemptReplay, type AttemptReplay } from '../protocol/attemptReplay';
 import type { Attempt } from '../protocol/messages';
 import type { Stage } from '../stage/stage';
 import { Player, type Speed } from './player';
-import { amiss, heightM, mirrored, momentAt, whole, type Mirror, type Moment, type StandardShown } from './scene';
+import {
+  amiss,
+  hasStandard,
+  heightM,
+  mirrored,
+  momentAt,
+  whole,
+  type Mirror,
+  type Moment,
+  type StandardShown,
+} from './scene';
 import type { ReplayShow } from './show.svelte';
 
 /** So long after a teacher's last touch a replay is not taken away by the next pupil. */
 export const HELD_MS = 30_000;
-/** Replays that are kept on the tablet, so that a second look needs no network. */
+/** Replays that are kept on the tablet: a second look asks the box for nothing, and is possible without a connection to it. */
 const KEPT = 8;
+/** After so long a replay does not arrive any more. */
+export const PATIENCE_MS = 8000;
+/** A replay that stands still from the start was looked at by then. */
+export const LOOKED_AT_MS = 6000;
 
 /** Fetches the replays of attempts and plays them on the stage. Holds their poses outside of the reactive state. */
 export class Replays {
@@ -20,6 +34,9 @@ export class Replays {
   private dirty = false;
   private leapt = false;
   private fetching: AbortController | null = null;
+  private wanted: Attempt | null = null;
+  private askedMs = -Infinity;
+  private shownMs = -Infinity;
   private readonly reducedMotion = matchMedia('(prefers-reduced-motion: reduce)');
   /** Levels of the joints in the picture that was drawn last; null while none is drawn. */
   levels: Uint8Array | null = null;
@@ -28,11 +45,13 @@ export class Replays {
 
   /**
    * @param stopped called when the stage is free again
+   * @param unreadable called when what came is no replay
    */
   constructor(
     private readonly show: ReplayShow,
     private readonly stage: Stage,
     private readonly stopped: () => void,
+    private readonly unreadable: () => void,
   ) {}
 
   /** A replay has the place of the live figure. */
@@ -50,21 +69,24 @@ export class Replays {
   }
 
   /**
-   * The pupil moves again: is that the end of the replay? Not while somebody looks at it, and not before it was to be seen once, as
-   * whoever has tried something walks back first.
+   * The pupil moves since `sinceMs`: is that the end of the replay? Not while somebody looks at it, nor if it is how he ended what is
+   * shown, and not before that was to be seen once, as whoever has tried something walks back first.
    */
-  isOver(nowMs: number): boolean {
+  isOver(nowMs: number, sinceMs: number): boolean {
     const player = this.player;
-    return !this.held(nowMs) && (player === null || !player.playing || player.rounds > 0);
+    if (!this.show.on || this.held(nowMs) || sinceMs < this.askedMs) return false;
+    if (player === null) return this.show.phase !== 'loading';
+    return player.rounds > 0 || (!player.playing && nowMs - this.shownMs >= LOOKED_AT_MS);
   }
 
   get rounds(): number {
     return this.player?.rounds ?? 0;
   }
 
-  /** The box was perhaps started anew, and gives the same numbers to other attempts. */
-  forget(): void {
-    this.kept.clear();
+  /** Of attempts that the box does not list any more nothing is kept. */
+  keepOnly(listed: ReadonlySet<number>): void {
+    for (const id of [...this.kept.keys()]) if (!listed.has(id)) this.kept.delete(id);
+    this.show.kept = new Set(this.kept.keys());
   }
 
   /** Somebody touched the replay, or asked for it. */
@@ -74,28 +96,40 @@ export class Replays {
 
   /** Shows an attempt, as soon as its replay is there. */
   async start(attempt: Attempt): Promise<void> {
-    this.fetching?.abort();
+    this.cancel();
     this.heldUntilMs = -Infinity;
     this.show.id = attempt.id;
-    const abort = (this.fetching = new AbortController());
+    this.wanted = attempt;
+    this.askedMs = performance.now();
     let replay = this.kept.get(attempt.id) ?? null;
     if (replay === null) {
       this.show.phase = 'loading';
       this.release();
-      replay = await fetched(attempt.id, abort.signal);
-      if (abort.signal.aborted) return;
-    }
-    if (replay === null) {
-      this.show.phase = 'missing';
-      return;
+      const fetching = (this.fetching = new AbortController());
+      const fetched = await fetchReplay(attempt.id, fetching);
+      if (this.fetching !== fetching) return; // somebody wants something else by now
+      if (fetched === 'unreadable') this.unreadable();
+      if (typeof fetched === 'string') {
+        this.show.phase = fetched === 'gone' ? 'missing' : 'failed';
+        return;
+      }
+      replay = fetched;
     }
     this.keep(attempt.id, replay);
     this.begin(replay, attempt.handed);
   }
 
+  /** Asks once more for a replay that did not arrive. */
+  again(): void {
+    if (this.wanted === null) return;
+    void this.start(this.wanted);
+    this.touch();
+  }
+
   /** Back to the live figure. */
   stop(): void {
-    this.fetching?.abort();
+    this.cancel();
+    this.wanted = null;
     if (!this.show.on) return;
     this.show.phase = 'off';
     this.show.id = null;
@@ -162,11 +196,11 @@ export class Replays {
     this.show.lengthS = player.lengthS;
     this.show.keyframesS = keyframesS;
     this.show.amiss = amiss(replay);
-    const first = momentAt(replay, 0);
-    this.show.hasStandard = first.standard !== null;
+    this.show.hasStandard = hasStandard(replay);
     const pair = this.show.standard === 'beside' && this.show.hasStandard;
-    this.stage.beginAttempt(first.pose, { handed, heightM: heightM(replay) }, pair);
+    this.stage.beginAttempt(momentAt(replay, 0).pose, { handed, heightM: heightM(replay) }, pair);
     this.mirror = this.show.mirror ? this.stage.mirror() : null;
+    this.shownMs = performance.now();
     // Who wants no motion gets the decisive moment, and may start it.
     if (this.reducedMotion.matches) player.seekKeyframe(2);
     this.show.phase = 'shown';
@@ -188,6 +222,11 @@ export class Replays {
     this.stage.requestDraw();
   }
 
+  private cancel(): void {
+    this.fetching?.abort();
+    this.fetching = null;
+  }
+
   private release(): void {
     const drawn = this.player !== null;
     this.player = this.replay = this.levels = null;
@@ -204,14 +243,23 @@ export class Replays {
       if (this.kept.size <= KEPT) break;
       this.kept.delete(oldest);
     }
+    this.show.kept = new Set(this.kept.keys());
   }
 }
 
-async function fetched(id: number, signal: AbortSignal): Promise<AttemptReplay | null> {
+/** The replay of an attempt, or why there is none: the box has it no more, it did not arrive, or what came is none. */
+async function fetchReplay(
+  id: number,
+  fetching: AbortController,
+): Promise<AttemptReplay | 'gone' | 'lost' | 'unreadable'> {
+  const late = setTimeout(() => fetching.abort(), PATIENCE_MS);
   try {
-    const response = await fetch(`/api/attempts/${id}/replay`, { signal });
-    return response.ok ? whole(readAttemptReplay(await response.arrayBuffer())) : null;
-  } catch {
-    return null; // no network, or bytes that are none of ours: there is nothing to show
+    const response = await fetch(`/api/attempts/${id}/replay`, { signal: fetching.signal });
+    if (!response.ok) return response.status === 404 ? 'gone' : 'lost';
+    return whole(readAttemptReplay(await response.arrayBuffer()));
+  } catch (error) {
+    return error instanceof AttemptReplayError ? 'unreadable' : 'lost';
+  } finally {
+    clearTimeout(late);
   }
 }

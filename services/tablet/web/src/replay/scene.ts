@@ -1,7 +1,7 @@
 /** What the figure and the standard look like at a moment of an attempt. */
 
-import { complete, standing, type Pose } from '../figure/pose';
-import { JOINT_COUNT, JointState } from '../protocol/motionFrame';
+import { complete, showsSomebody, standing, type Pose } from '../figure/pose';
+import { JOINT_COUNT } from '../protocol/motionFrame';
 import { Level, type AttemptReplay } from '../protocol/attemptReplay';
 
 /** Where the standard is drawn. */
@@ -19,36 +19,53 @@ const AXES = 3 * JOINT_COUNT;
 /** Each joint's counterpart on the other side of the body. */
 const OTHER_SIDE = [0, 2, 1, 4, 3, 6, 5, 8, 7, 10, 9, 12, 11, 14, 13, 16, 15];
 
-/** The attempt with a place for every joint, so that the figure stays whole; states and levels say as before what is not known. */
+/**
+ * The attempt with a place for every joint, so that both figures stay whole; states and levels say as before what is not known. Where
+ * nothing of the standard's trunk is known there is no standard.
+ */
 export function whole(replay: AttemptReplay): AttemptReplay {
   const positionsM = new Float32Array(replay.positionsM.length);
+  const standardM = new Float32Array(replay.standardM.length).fill(NaN);
   let pose = standing();
+  let standard = standing();
   for (let frame = 0; frame < replay.frames; frame++) {
-    pose = complete(poseOf(replay, frame), pose);
+    pose = complete(poseOf(replay.positionsM, replay.states, frame), pose);
     positionsM.set(pose.positionsM, frame * AXES);
+    const model = poseOf(replay.standardM, replay.standardStates, frame);
+    if (!showsSomebody(model)) continue;
+    standard = complete(model, standard);
+    standardM.set(standard.positionsM, frame * AXES);
   }
-  return { ...replay, positionsM };
+  return { ...replay, positionsM, standardM };
 }
 
-function poseOf(replay: AttemptReplay, frame: number): Pose {
+/** Whether there is a standard to be shown in any frame. */
+export function hasStandard(replay: AttemptReplay): boolean {
+  return replay.standardM.some(Number.isFinite);
+}
+
+function poseOf(positionsM: Float32Array, states: Uint8Array, frame: number): Pose {
   return {
-    positionsM: replay.positionsM.slice(frame * AXES, (frame + 1) * AXES),
-    states: replay.states.slice(frame * JOINT_COUNT, (frame + 1) * JOINT_COUNT),
+    positionsM: positionsM.slice(frame * AXES, (frame + 1) * AXES),
+    states: jointsOf(states, frame),
   };
 }
 
-/** The attempt at a moment, with places between two frames; states and levels are those of the nearer frame. */
+function jointsOf(values: Uint8Array, frame: number): Uint8Array {
+  return values.slice(frame * JOINT_COUNT, (frame + 1) * JOINT_COUNT);
+}
+
+/** The moment of an attempt that is `whole`, with places between two frames; states and levels are those of the nearer frame. */
 export function momentAt(replay: AttemptReplay, positionS: number): Moment {
   const place = Math.min(Math.max(positionS / replay.frameS, 0), replay.frames - 1);
   const [first, nearest] = [Math.floor(place), Math.round(place)];
   const share = place - first;
-  const joints = (values: Uint8Array): Uint8Array => values.slice(nearest * JOINT_COUNT, (nearest + 1) * JOINT_COUNT);
   const standardM = between(replay.standardM, first, share);
   return {
-    pose: { positionsM: between(replay.positionsM, first, share), states: joints(replay.states) },
-    levels: joints(replay.levels),
+    pose: { positionsM: between(replay.positionsM, first, share), states: jointsOf(replay.states, nearest) },
+    levels: jointsOf(replay.levels, nearest),
     standard: standardM.every(Number.isFinite)
-      ? { positionsM: standardM, states: new Uint8Array(JOINT_COUNT).fill(JointState.Seen) }
+      ? { positionsM: standardM, states: jointsOf(replay.standardStates, nearest) }
       : null,
   };
 }
@@ -63,8 +80,7 @@ function between(valuesM: Float32Array, frame: number, share: number): Float32Ar
 /** Frame by frame how far from the standard the joints are that are judged: 0 if all are green or nobody knows, 1 if all are red. */
 export function amiss(replay: AttemptReplay): number[] {
   return Array.from({ length: replay.frames }, (_, frame) => {
-    const levels = replay.levels.slice(frame * JOINT_COUNT, (frame + 1) * JOINT_COUNT);
-    const known = levels.filter((level) => level !== Level.Grey);
+    const known = jointsOf(replay.levels, frame).filter((level) => level !== Level.Grey);
     const sum = known.reduce((total, level) => total + (level - Level.Green) / (Level.Red - Level.Green), 0);
     // One joint of many is to be seen, too.
     return known.length > 0 ? Math.sqrt(sum / known.length) : 0;

@@ -3,7 +3,8 @@
 import type { Speed } from './player';
 import type { StandardShown } from './scene';
 
-export type ReplayPhase = 'off' | 'loading' | 'shown' | 'missing';
+/** `missing`: the box has it no more; `failed`: it did not arrive, and may be asked for again. */
+export type ReplayPhase = 'off' | 'loading' | 'shown' | 'missing' | 'failed';
 
 export class ReplayShow {
   phase = $state<ReplayPhase>('off');
@@ -15,6 +16,8 @@ export class ReplayShow {
   /** Frame by frame how far from the standard, 0 to 1. */
   amiss = $state.raw<readonly number[]>([]);
   hasStandard = $state(true);
+  /** Attempts that can be seen without a connection. */
+  kept = $state.raw<ReadonlySet<number>>(new Set());
 
   // What was chosen holds for the next replays too.
   speed = $state<Speed>(0.5);

@@ -7,6 +7,9 @@ const FARTHEST_M = 12;
 const HIGHEST_RAD = 0.12;
 const LOWEST_RAD = Math.PI / 2 - 0.02;
 const RETURN_MS = 450;
+/** What a turning view loses with each refresh of a screen of 60 Hz. */
+const DAMPING = 0.12;
+const REFRESH_MS = 1000 / 60;
 
 /** A place to look from and a point to look at. */
 export interface View {
@@ -32,6 +35,7 @@ export class Orbit {
   private readonly controls: OrbitControls;
   private readonly reducedMotion = matchMedia('(prefers-reduced-motion: reduce)');
   private journey: Journey | null = null;
+  private lastMs = 0;
 
   constructor(
     private readonly camera: PerspectiveCamera,
@@ -40,7 +44,6 @@ export class Orbit {
   ) {
     this.controls = new OrbitControls(camera, element);
     this.controls.enableDamping = !this.reducedMotion.matches;
-    this.controls.dampingFactor = 0.12;
     this.controls.rotateSpeed = 0.75;
     this.controls.minDistance = NEAREST_M;
     this.controls.maxDistance = FARTHEST_M;
@@ -90,6 +93,7 @@ export class Orbit {
   /** Goes to another view, in an instant or in half a second. */
   moveTo(target: Vector3, position: Vector3, gently: boolean): void {
     this.touched = false;
+    this.stopTurning();
     if (!gently || this.reducedMotion.matches) {
       this.journey = null;
       this.controls.target.copy(target);
@@ -124,6 +128,9 @@ export class Orbit {
 
   /** One step of damping or of a journey; true if another has to follow. */
   update(nowMs: number): boolean {
+    // Where few pictures are drawn the view comes to rest as soon as elsewhere.
+    this.controls.dampingFactor = 1 - (1 - DAMPING) ** Math.max((nowMs - this.lastMs) / REFRESH_MS, 1);
+    this.lastMs = nowMs;
     const journey = this.journey;
     if (journey === null) return this.controls.update();
     journey.startMs ??= nowMs;
@@ -134,6 +141,14 @@ export class Orbit {
     if (t === 1) this.journey = null;
     this.controls.update();
     return true;
+  }
+
+  /** What is left of a finger's push would carry the view away from where it is sent. */
+  private stopTurning(): void {
+    const damped = this.controls.enableDamping;
+    this.controls.enableDamping = false;
+    this.controls.update();
+    this.controls.enableDamping = damped;
   }
 
   dispose(): void {

@@ -119,13 +119,13 @@ export class Stage {
 
   /** A moment of an attempt. `leapt`: it does not follow upon the one before. */
   showAttempt({ pose, levels, standard }: Moment, shown: StandardShown, leapt: boolean): void {
-    const beside = standard !== null && shown === 'beside';
-    const half = this.right().multiplyScalar(beside ? BESIDE_M / 2 : 0);
+    // Also in a frame without a standard, so that the pupil does not leap aside.
+    const half = this.right().multiplyScalar(this.pair ? BESIDE_M / 2 : 0);
     const aside = moved(pose, [-half.x, -half.y]);
     this.figure.showJudged(aside, levels);
     this.stageAt(pose, aside);
     this.leapt ||= leapt;
-    this.showStandard(shown === 'off' ? null : standard && moved(standard, [half.x, half.y]), beside);
+    this.showStandard(shown === 'off' ? null : standard && moved(standard, [half.x, half.y]), this.pair);
   }
 
   /** The live figure is shown again, from where it was looked at before. */

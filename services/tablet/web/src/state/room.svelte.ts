@@ -18,6 +18,8 @@ export class Room {
   /** From the shutter to this screen; null while it cannot be known. */
   delayMs = $state<number | null>(null);
   roundTripMs = $state<number | null>(null);
+  /** The box's clock, as of a second ago at most; null while it is not known. It goes on without a connection. */
+  boxMs = $state<number | null>(null);
   /** Pictures of the figure drawn in the last second. */
   drawnHz = $state(0);
   droppedLate = $state(0);

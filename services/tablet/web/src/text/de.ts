@@ -42,12 +42,14 @@ const phases: Words['phases'] = {
   live: { pill: 'Live', title: '', words: '' },
 };
 
-const f = formats('de-DE');
+const f = formats('de-DE', 'der Größe');
 
 export const de: Words = {
   formats: f,
   product: 'KineBox',
   language: 'Sprache',
+  close: 'Schließen',
+  refused: (what) => `${what}: Die Box hat es nicht übernommen`,
   side: 'Rückmeldung und Zustand des Raums',
   phases,
   gettingReady: { title: 'Die Kameras machen sich bereit', words: 'Einen Moment.' },
@@ -84,20 +86,47 @@ export const de: Words = {
   activity: {
     title: 'Übung',
     choose: 'Übung wählen',
-    close: 'Schließen',
     any: 'Jede Übung',
     anyHint: 'Die Box erkennt, welche es ist',
+    preset: 'Voreingestellt, nicht gewählt',
     unknown: 'Nicht bekannt',
+  },
+
+  pupil: {
+    title: 'Schüler/in',
+    choose: 'Wer ist dran?',
+    nobody: 'Niemand',
+    nobodyHint: 'Versuche werden ohne Kürzel notiert',
+    unknown: 'Nicht bekannt',
+    is: (code) => `Schüler/in ${code}`,
+    next: 'Nächste Person',
+    nextIs: (code) => `Als Nächstes: ${code}`,
+    another: 'Anderes Kürzel',
+    take: 'Übernehmen',
+    wrong:
+      'Kein Kürzel. Ein Kürzel ist eine Zahl, auch mit Buchstaben: 7, 7B, B12, AB-12 oder 7B-12; höchstens 8 Zeichen.',
+    privacy: 'Bitte nur Kürzel, keine Namen: Wer sich dahinter verbirgt, wissen nur Sie.',
+    correct: (number) => `Wer machte Versuch ${number}?`,
+    change: (who) => `${who}. Korrigieren`,
+    notKept: 'Es wird nichts aufgenommen, deshalb kommt diese Korrektur in keinen Bericht.',
   },
 
   feedback: {
     title: 'Letzter Versuch',
     earlier: (number) => `Versuch ${number}`,
     none: { title: 'Noch kein Versuch', words: 'Was zu ändern ist, steht hier eine Sekunde nach jedem Versuch.' },
+    gone: {
+      recorded: { title: 'Frühere Versuche stehen im Bericht', words: 'Der nächste Versuch erscheint wieder hier.' },
+      lost: { title: 'Frühere Versuche sind nicht mehr bekannt', words: 'Der nächste Versuch erscheint wieder hier.' },
+    },
     off: { title: 'Versuche werden nicht beurteilt', words: 'Der Teil der Box, der sie beurteilt, arbeitet nicht.' },
     past: 'Von vor dem Abbruch der Verbindung',
-    fine: 'Diesmal keine Korrektur',
-    unseen: 'Nicht gut genug gesehen, um zu urteilen',
+    silence: {
+      fine: 'Diesmal keine Korrektur',
+      unsure: 'Nichts ist sicher genug, um es zu korrigieren',
+      unseen: 'Nicht gut genug gesehen, um zu urteilen',
+    },
+    rest: 'Der Rest war nicht gut genug zu sehen',
     score: 'Punkte',
     scoreOf: (value, sigma) => `${value} von 100, plus oder minus ${sigma}`,
     scoreUnknown: 'Punkte nicht bekannt',
@@ -109,14 +138,20 @@ export const de: Words = {
   attempts: {
     title: 'Versuche',
     none: 'Hier erscheinen die Versuche dieser Stunde.',
-    show: (number, action, score) =>
-      `Versuch ${number} noch einmal sehen: ${action}, ${score === null ? 'Punkte nicht bekannt' : `${score} Punkte`}`,
+    anew: 'Neu beginnen',
+    anewTitle: 'Mit leerer Liste beginnen?',
+    anewWords: 'Die Liste wird auf allen Tablets geleert. Es wird nichts aufgenommen, diese Versuche sind dann weg.',
+    keep: 'Liste behalten',
+    show: (number, action, score, pupil) =>
+      `Versuch ${number} noch einmal sehen: ${action}${pupil === null ? '' : `, Kürzel ${pupil}`}, ${score === null ? 'Punkte nicht bekannt' : `${score} Punkte`}`,
   },
 
   replay: {
     title: 'Zeitlupe',
     loading: 'Die Wiederholung kommt gleich',
     missing: 'Die Wiederholung dieses Versuchs gibt es nicht mehr',
+    failed: 'Die Wiederholung kam nicht an',
+    again: 'Noch einmal',
     back: 'Zurück zu Live',
     play: 'Abspielen',
     pause: 'Anhalten',
@@ -206,7 +241,6 @@ export const de: Words = {
   details: {
     open: 'Details',
     title: 'Für die Technik',
-    close: 'Schließen',
     cameras: 'Kameras',
     processes: 'Programme der Box',
     connection: 'Dieses Tablet',

@@ -2,7 +2,7 @@
 
 import type { LateCause } from '../connection/lateness';
 import type { Phase } from '../connection/phase';
-import type { CalibrationCode, CameraStatus, MachineCode, ProcessStatus, Verdict } from '../protocol/messages';
+import type { CalibrationCode, CameraStatus, MachineCode, ProcessStatus, Silence, Verdict } from '../protocol/messages';
 import type { StandardShown } from '../replay/scene';
 import { formats } from './format';
 
@@ -98,13 +98,16 @@ const calibration: Record<CalibrationCode, string> = {
   camera_moved: 'A camera was moved or exchanged – the figure may be wrong',
 };
 
-const f = formats('en-GB');
+const f = formats('en-GB', 'of height');
 const seconds = (s: number): string => (s === 1 ? '1 second' : `${s} seconds`);
 
 export const en = {
   formats: f,
   product: 'KineBox',
   language: 'Language',
+  close: 'Close',
+  /** Something was asked of the box: an activity, a pupil, a correction. */
+  refused: (what: string): string => `${what}: the box did not take it`,
   side: 'Feedback and state of the room',
   phases,
   gettingReady: { title: 'Cameras are getting ready', words: 'One moment.' },
@@ -127,21 +130,50 @@ export const en = {
   activity: {
     title: 'Activity',
     choose: 'Choose the activity',
-    close: 'Close',
     any: 'Any activity',
     anyHint: 'The box finds out which',
+    /** The site file says so, and nobody has chosen it. */
+    preset: 'Preset, not chosen',
     unknown: 'Not known',
+  },
+
+  pupil: {
+    title: 'Pupil',
+    choose: 'Who is up?',
+    nobody: 'Nobody',
+    nobodyHint: 'Attempts are noted without a code',
+    unknown: 'Not known',
+    is: (code: string): string => `Pupil ${code}`,
+    next: 'Next pupil',
+    nextIs: (code: string): string => `Next: pupil ${code}`,
+    another: 'Another code',
+    take: 'OK',
+    wrong: 'Not a code. A code is a number, also with a letter: 7, 7B, B12, AB-12 or 7B-12; at most 8 characters.',
+    privacy: 'Codes only, please, and no names: only you know who is behind a code.',
+    correct: (number: number | string): string => `Whose was attempt ${number}?`,
+    change: (who: string): string => `${who}. Correct it`,
+    notKept: 'Nothing is being recorded, so this correction does not get into a report.',
   },
 
   feedback: {
     title: 'Last attempt',
-    earlier: (number: number): string => `Attempt ${number}`,
+    earlier: (number: number | string): string => `Attempt ${number}`,
     none: { title: 'No attempt yet', words: 'What to change stands here a second after each attempt.' },
+    /** The page's server was started again and cannot list what was before; the lesson holds it, or nobody knows it any more. */
+    gone: {
+      recorded: { title: 'Earlier attempts are in the report', words: 'The next attempt is shown here again.' },
+      lost: { title: 'Earlier attempts are not known any more', words: 'The next attempt is shown here again.' },
+    },
     off: { title: 'Attempts are not judged', words: 'The part of the box that judges them is not at work.' },
     past: 'From before the connection was lost',
-    /** Nothing is corrected: there was no fault, or none that is sure enough. */
-    fine: 'No correction this time',
-    unseen: 'Not seen well enough to judge',
+    /** What it means that nothing is corrected. */
+    silence: {
+      fine: 'No correction this time',
+      unsure: 'Nothing that is sure enough to correct',
+      unseen: 'Not seen well enough to judge',
+    } satisfies Record<Silence, string>,
+    /** The same where something was good, and too little else was seen. */
+    rest: 'The rest was not seen well enough',
     score: 'Score',
     scoreOf: (value: string, sigma: string): string => `${value} of 100, give or take ${sigma}`,
     scoreUnknown: 'Score not known',
@@ -156,14 +188,20 @@ export const en = {
   attempts: {
     title: 'Attempts',
     none: 'The attempts of this lesson will be listed here.',
-    show: (number: number, action: string, score: string | null): string =>
-      `See attempt ${number} again: ${action}, ${score === null ? 'score not known' : `score ${score}`}`,
+    anew: 'Begin anew',
+    anewTitle: 'Begin with an empty list?',
+    anewWords: 'The list is emptied on all tablets. Nothing is being recorded, so these attempts are gone then.',
+    keep: 'Keep the list',
+    show: (number: number | string, action: string, score: string | null, pupil: string | null): string =>
+      `See attempt ${number} again: ${action}${pupil === null ? '' : `, pupil ${pupil}`}, ${score === null ? 'score not known' : `score ${score}`}`,
   },
 
   replay: {
     title: 'Slow replay',
     loading: 'The replay is on its way',
     missing: 'The replay of this attempt is no longer there',
+    failed: 'The replay did not arrive',
+    again: 'Try again',
     back: 'Back to live',
     play: 'Play',
     pause: 'Pause',
@@ -229,7 +267,6 @@ export const en = {
   details: {
     open: 'Details',
     title: 'For the technician',
-    close: 'Close',
     cameras: 'Cameras',
     processes: 'Programs of the box',
     connection: 'This tablet',

@@ -42,13 +42,15 @@ const phases: Words['phases'] = {
   live: { pill: 'En directo', title: '', words: '' },
 };
 
-const f = formats('es-ES');
+const f = formats('es-ES', 'de estatura');
 const seconds = (s: number): string => (s === 1 ? '1 segundo' : `${s} segundos`);
 
 export const es: Words = {
   formats: f,
   product: 'KineBox',
   language: 'Idioma',
+  close: 'Cerrar',
+  refused: (what) => `${what}: la caja no lo ha aceptado`,
   side: 'Comentarios y estado de la sala',
   phases,
   gettingReady: { title: 'Las cámaras se están preparando', words: 'Un momento.' },
@@ -85,20 +87,50 @@ export const es: Words = {
   activity: {
     title: 'Actividad',
     choose: 'Elegir la actividad',
-    close: 'Cerrar',
     any: 'Cualquier actividad',
     anyHint: 'La caja reconoce cuál es',
+    preset: 'Predefinida, sin elegir',
     unknown: 'Desconocida',
+  },
+
+  pupil: {
+    title: 'Alumno/a',
+    choose: '¿A quién le toca?',
+    nobody: 'Nadie',
+    nobodyHint: 'Los intentos se anotan sin código',
+    unknown: 'Desconocido',
+    is: (code) => `Alumno/a ${code}`,
+    next: 'El siguiente',
+    nextIs: (code) => `Siguiente: ${code}`,
+    another: 'Otro código',
+    take: 'Aceptar',
+    wrong:
+      'No es un código. Un código es un número, también con letra: 7, 7B, B12, AB-12 o 7B-12; 8 caracteres como máximo.',
+    privacy: 'Solo códigos, por favor, sin nombres: solo usted sabe a quién corresponde cada código.',
+    correct: (number) => `¿De quién fue el intento ${number}?`,
+    change: (who) => `${who}. Corregir`,
+    notKept: 'No se está grabando nada, así que esta corrección no llegará a ningún informe.',
   },
 
   feedback: {
     title: 'Último intento',
     earlier: (number) => `Intento ${number}`,
     none: { title: 'Aún no hay intentos', words: 'Qué cambiar aparece aquí un segundo después de cada intento.' },
+    gone: {
+      recorded: {
+        title: 'Los intentos anteriores están en el informe',
+        words: 'El próximo intento volverá a aparecer aquí.',
+      },
+      lost: { title: 'Los intentos anteriores ya no se conocen', words: 'El próximo intento volverá a aparecer aquí.' },
+    },
     off: { title: 'Los intentos no se evalúan', words: 'La parte de la caja que los evalúa no está en marcha.' },
     past: 'De antes de perder la conexión',
-    fine: 'Esta vez, sin correcciones',
-    unseen: 'No se vio lo bastante bien para evaluarlo',
+    silence: {
+      fine: 'Esta vez, sin correcciones',
+      unsure: 'Nada lo bastante seguro como para corregirlo',
+      unseen: 'No se vio lo bastante bien para evaluarlo',
+    },
+    rest: 'El resto no se vio lo bastante bien',
     score: 'Puntos',
     scoreOf: (value, sigma) => `${value} de 100, más o menos ${sigma}`,
     scoreUnknown: 'Puntos desconocidos',
@@ -110,14 +142,20 @@ export const es: Words = {
   attempts: {
     title: 'Intentos',
     none: 'Aquí aparecerán los intentos de esta clase.',
-    show: (number, action, score) =>
-      `Ver de nuevo el intento ${number}: ${action}, ${score === null ? 'puntos desconocidos' : `${score} puntos`}`,
+    anew: 'Empezar de nuevo',
+    anewTitle: '¿Empezar con una lista vacía?',
+    anewWords: 'La lista se vacía en todas las tabletas. No se está grabando nada: estos intentos se perderán.',
+    keep: 'Conservar la lista',
+    show: (number, action, score, pupil) =>
+      `Ver de nuevo el intento ${number}: ${action}${pupil === null ? '' : `, código ${pupil}`}, ${score === null ? 'puntos desconocidos' : `${score} puntos`}`,
   },
 
   replay: {
     title: 'Cámara lenta',
     loading: 'La repetición está en camino',
     missing: 'La repetición de este intento ya no existe',
+    failed: 'La repetición no ha llegado',
+    again: 'Otra vez',
     back: 'Volver al directo',
     play: 'Reproducir',
     pause: 'Pausa',
@@ -203,7 +241,6 @@ export const es: Words = {
   details: {
     open: 'Detalles',
     title: 'Para el técnico',
-    close: 'Cerrar',
     cameras: 'Cámaras',
     processes: 'Programas de la caja',
     connection: 'Esta tableta',

@@ -13,26 +13,38 @@ export interface Formats {
   size: (mb: number | null) => string;
   /** How fast something is played. */
   pace: (factor: number) => string;
+  /** So many minutes ago; from an hour on in hours. */
+  ago: (minutes: number) => string;
   estimate: (value: number, sigma: number, unit: string) => Estimate;
 }
 
-/** A measured value in words: the number, how far it may be off, and its unit. */
+/** A measured value in words: the number, how far it may be off, its unit, and what that is of, where it does not say so itself. */
 export interface Estimate {
   value: string;
   sigma: string;
   unit: string;
+  of: string;
 }
 
-const NONE = '–';
+/** In the place of what is not known. */
+export const NONE = '–';
+const MINUS = '\u2212';
 /** Of measures, as they stand behind a number. */
 const UNITS: Record<string, string> = { deg: '°', cm: ' cm', pct: ' %', m_s: ' m/s', s: ' s', deg_s: ' °/s' };
 
-/** @param locale as browsers know it */
-export function formats(locale: string): Formats {
+/**
+ * @param locale as browsers know it
+ * @param ofHeight what a percentage of the pupil's height is of
+ */
+export function formats(locale: string, ofHeight: string): Formats {
   const days = new Intl.DateTimeFormat(locale, { dateStyle: 'long' });
   const moments = new Intl.DateTimeFormat(locale, { dateStyle: 'medium', timeStyle: 'medium' });
+  const ages = new Intl.RelativeTimeFormat(locale);
   const known = (value: number, digits: number): string =>
-    value.toLocaleString(locale, { minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false });
+    // Rounded first: what becomes nought has no minus. (`signDisplay: 'negative'` is not known to Chrome 100.)
+    (Number(value.toFixed(digits)) + 0)
+      .toLocaleString(locale, { minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false })
+      .replace('-', MINUS);
   const number = (value: number | null, digits = 0): string => (value === null ? NONE : known(value, digits));
   return {
     number,
@@ -49,9 +61,15 @@ export function formats(locale: string): Formats {
       return mb < 1024 ? `${known(mb, 0)} MB` : `${known(mb / 1024, 1)} GB`;
     },
     pace: (factor) => `${{ 0.25: '¼', 0.5: '½' }[factor] ?? factor.toLocaleString(locale)}×`,
+    ago: (minutes) => (minutes < 60 ? ages.format(-minutes, 'minute') : ages.format(-Math.floor(minutes / 60), 'hour')),
     estimate: (value, sigma, unit) => {
       const digits = digitsOf(sigma);
-      return { value: known(value, digits), sigma: known(sigma, digits), unit: UNITS[unit] ?? (unit && ` ${unit}`) };
+      return {
+        value: known(value, digits),
+        sigma: known(sigma, digits),
+        unit: UNITS[unit] ?? (unit && ` ${unit}`),
+        of: unit === 'pct' ? ofHeight : '',
+      };
     },
   };
 }
@@ -70,4 +88,9 @@ function clock(s: number | null): string {
 function digitsOf(sigma: number): number {
   if (sigma >= 0.95) return 0;
   return sigma >= 0.095 ? 1 : 2;
+}
+
+/** The unit with what it is of: " % of height". */
+export function wholeUnit({ unit, of }: Estimate): string {
+  return of === '' ? unit : `${unit} ${of}`;
 }

@@ -19,12 +19,14 @@ const phases: Words['phases'] = {
   live: { pill: '实时', title: '', words: '' },
 };
 
-const f = formats('zh-CN');
+const f = formats('zh-CN', '身高');
 
 export const zh: Words = {
   formats: f,
   product: 'KineBox',
   language: '语言',
+  close: '关闭',
+  refused: (what) => `${what}：主机没有接受`,
   side: '反馈与现场状态',
   phases,
   gettingReady: { title: '摄像机正在准备', words: '请稍候。' },
@@ -52,20 +54,46 @@ export const zh: Words = {
   activity: {
     title: '项目',
     choose: '选择项目',
-    close: '关闭',
     any: '任意项目',
     anyHint: '由主机自动识别',
+    preset: '预设，未选择',
     unknown: '未知',
+  },
+
+  pupil: {
+    title: '学生',
+    choose: '轮到谁？',
+    nobody: '未指定',
+    nobodyHint: '动作不记在任何代号下',
+    unknown: '未知',
+    is: (code) => `学生 ${code}`,
+    next: '下一位',
+    nextIs: (code) => `下一位：${code}`,
+    another: '其他代号',
+    take: '确定',
+    wrong: '这不是代号。代号是数字，也可以带字母：7、7B、B12、AB-12 或 7B-12，最多 8 个字符。',
+    privacy: '请只用代号，不要用姓名：代号是谁，只有您知道。',
+    correct: (number) => `第 ${number} 次是谁的？`,
+    change: (who) => `${who}。更正`,
+    notKept: '现在没有录制，这次更正不会进入报告。',
   },
 
   feedback: {
     title: '最近一次',
     earlier: (number) => `第 ${number} 次`,
     none: { title: '还没有动作', words: '每次动作结束一秒后，这里会说明要改进什么。' },
+    gone: {
+      recorded: { title: '之前的动作在报告里', words: '下一次动作会重新显示在这里。' },
+      lost: { title: '之前的动作已无法得知', words: '下一次动作会重新显示在这里。' },
+    },
     off: { title: '没有在评价动作', words: '主机中负责评价的部分没有运行。' },
     past: '连接中断之前的内容',
-    fine: '这次没有要纠正的',
-    unseen: '看得不够清楚，无法评价',
+    silence: {
+      fine: '这次没有要纠正的',
+      unsure: '没有足够把握指出要纠正的地方',
+      unseen: '看得不够清楚，无法评价',
+    },
+    rest: '其余部分看得不够清楚',
     score: '得分',
     scoreOf: (value, sigma) => `满分 100，得 ${value}，上下 ${sigma}`,
     scoreUnknown: '得分未知',
@@ -77,13 +105,20 @@ export const zh: Words = {
   attempts: {
     title: '各次动作',
     none: '这节课的各次动作会列在这里。',
-    show: (number, action, score) => `再看第 ${number} 次：${action}，${score === null ? '得分未知' : `${score} 分`}`,
+    anew: '重新开始',
+    anewTitle: '从空列表重新开始？',
+    anewWords: '所有平板上的列表都会清空。现在没有录制，这些动作将不再保留。',
+    keep: '保留列表',
+    show: (number, action, score, pupil) =>
+      `再看第 ${number} 次：${action}${pupil === null ? '' : `，学生 ${pupil}`}，${score === null ? '得分未知' : `${score} 分`}`,
   },
 
   replay: {
     title: '慢动作回放',
     loading: '回放即将开始',
     missing: '这次动作的回放已不存在',
+    failed: '回放没有传到',
+    again: '再试一次',
     back: '回到实时',
     play: '播放',
     pause: '暂停',
@@ -156,7 +191,6 @@ export const zh: Words = {
   details: {
     open: '详情',
     title: '技术人员信息',
-    close: '关闭',
     cameras: '摄像机',
     processes: '主机的程序',
     connection: '这台平板',

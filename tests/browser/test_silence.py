@@ -1,0 +1,54 @@
+"""Where nothing is corrected the page says what that means, and approves of nothing that it does not know."""
+
+import msgspec
+import pytest
+from playwright.sync_api import Page, expect
+
+from models.messages.feedback import Feedback
+from tests.browser.attempts import tried, unseen
+from tests.browser.room import Room
+from tests.browser.shown_attempts import FAULT, SHOT
+from tests.browser.test_page import open_live
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+FINE, UNSURE = "No correction this time", "Nothing that is sure enough to correct"
+UNSEEN, REST = "Not seen well enough to judge", "The rest was not seen well enough"
+
+
+def made_poor(feedback: Feedback) -> Feedback:
+    """The same attempt with a number that is poor, and which no fault is about."""
+    one, *others = feedback.measures
+    return msgspec.structs.replace(feedback, measures=(msgspec.structs.replace(one, verdict="poor"), *others), fine=False)
+
+
+def test_silence_says_what_it_means(tablet: Page, room: Room) -> None:
+    open_live(tablet, room)
+    good = tried(SHOT)
+    assert (good.silence, good.praise != "") == ("fine", True)
+    cases = (
+        (good, FINE, "fine"),
+        (made_poor(good), UNSURE, "unsure"),
+        (unseen(good), UNSEEN, "unseen"),
+        (msgspec.structs.replace(unseen(good), praise=good.praise), REST, "unseen"),
+        (tried(SHOT, FAULT), "", ""),
+    )
+    silence = tablet.locator("[data-silence]")
+    for made, said, meaning in cases:
+        number = room.attempt(made)
+        expect(tablet.locator("[data-shown]")).to_have_attribute("data-shown", str(number))
+        expect(silence).to_have_count(1 if said else 0)
+        if said:
+            expect(silence).to_have_text(said)
+            expect(silence).to_have_attribute("data-silence", meaning)
+        expect(tablet.locator("[data-praise]")).to_have_count(1 if made.praise else 0)
+
+
+def test_of_words_that_are_not_there_yet_silence_is_none(tablet: Page, room: Room) -> None:
+    """A cue whose words did not arrive was taken for "No correction this time"."""
+    tablet.route("**/api/teaching", lambda route: route.fulfill(status=503, body=""))
+    open_live(tablet, room)
+    number = room.attempt(tried(SHOT, FAULT))
+    expect(tablet.locator("[data-shown]")).to_have_attribute("data-shown", str(number))
+    expect(tablet.locator("[data-score]")).to_be_visible()
+    expect(tablet.locator("[data-silence]")).to_have_count(0)

@@ -1,0 +1,69 @@
+"""Angles that go round: turns that an arm made, or that noise made of it, before what is measured are none of it."""
+
+import numpy as np
+import pytest
+
+from models.arrays import Float
+from models.teaching.measure import Measure
+from services.evaluation.attempt import FoundAttempt
+from services.evaluation.measures.reduce import evaluate
+from services.evaluation.signals.catalogue import CATALOGUE
+from services.evaluation.signals.reading import Reading, unwrapped
+from services.evaluation.stature import Stature
+from services.evaluation.track import known_track
+from tests.stick_figure import DOWN, FRONT, LEFT, figure, unit
+
+FRAMES, FRAME_S = 60, 1 / 30
+ATTEMPT = FoundAttempt("volleyball_spike", "right", (1.2, 1.4, 1.6, 1.9))
+DRAWN_BACK = Measure(signal="upper_arm_azimuth", side="lead", at="peak", shift_s=(-0.2, 0.0), take="max")
+
+
+def reading(azimuths_deg: Float, lifted: Float) -> Reading:
+    """Of a right upper arm that points there, 0 to the front and 90 outwards, and is lifted by so much: 0 hangs, 1 is level."""
+    level = np.cos(np.radians(azimuths_deg))[:, None] * FRONT - np.sin(np.radians(azimuths_deg))[:, None] * LEFT
+    arms = lifted[:, None] * level + (1 - lifted[:, None]) * DOWN
+    joints = np.stack([figure({"right_upper_arm": unit(arm), "right_forearm": unit(arm)}) for arm in arms])
+    return Reading(known_track(joints, FRAME_S, 0.006), "right", told=Stature(1.5, 0.0))
+
+
+@pytest.mark.parametrize("turns", [-2, -1, 1])
+def test_an_arm_that_hung_before_has_no_turns_of_what_noise_made_of_it(turns: int) -> None:
+    azimuths = np.concatenate((np.linspace(0, 360 * turns, 30), np.linspace(360 * turns, 360 * turns + 100, 30)))
+    hung = reading(azimuths, np.repeat((0.02, 0.9), 30))
+    found = evaluate(DRAWN_BACK, hung, ATTEMPT)
+    assert found.known
+    assert 50 < found.value < 80
+    assert np.abs(hung.of(CATALOGUE["upper_arm_azimuth"], "lead").value[30:]).max() < 180
+
+
+@pytest.mark.parametrize("turns", [-1, 1, 2])
+def test_an_arm_that_circled_before_is_measured_without_its_circles(turns: int) -> None:
+    azimuths = np.concatenate((np.linspace(0, 360 * turns, 30), np.linspace(360 * turns, 360 * turns + 100, 30)))
+    found = evaluate(DRAWN_BACK, reading(azimuths, np.full(FRAMES, 0.9)), ATTEMPT)
+    assert 50 < found.value < 80
+
+
+def test_within_a_stretch_an_arm_is_followed_beyond_half_a_turn() -> None:
+    azimuths = np.linspace(40, 340, FRAMES)
+    found = evaluate(
+        Measure(signal="upper_arm_azimuth", side="lead", over=("start", "end"), take="range"),
+        reading(azimuths, np.ones(FRAMES)),
+        ATTEMPT,
+    )
+    assert found.value == pytest.approx(300 * 0.7 / ((FRAMES - 1) * FRAME_S), abs=2)
+
+
+def test_a_turn_is_followed_across_what_is_unknown_and_not_across_what_says_nothing() -> None:
+    degrees = np.array([170.0, np.nan, -170.0, -150.0, 100.0, 170.0, -175.0])
+    known = np.isfinite(degrees)
+    np.testing.assert_allclose(unwrapped(degrees)[known], [170, 190, 210, 100, 170, 185])
+    sure = np.array([True, True, True, False, True, True, True])
+    np.testing.assert_allclose(unwrapped(degrees, sure)[known], [170, 190, -150, 100, 170, 185])
+
+
+def test_a_signal_is_computed_once_under_whichever_name_its_side_has() -> None:
+    one = reading(np.zeros(FRAMES), np.ones(FRAMES))
+    knee, trunk = CATALOGUE["knee_flexion"], CATALOGUE["trunk_forward"]
+    assert one.of(knee, "lead") is one.of(knee, "right")
+    assert one.of(knee, "other") is one.of(knee, "left")
+    assert one.of(trunk, "both") is one.of(trunk, "lead")
