@@ -5,8 +5,8 @@ from typing import Final
 STYLE: Final = """
 @page { size: A4; margin: 11mm 12mm 12mm }
 * { box-sizing: border-box }
-html { color: #111; background: #fff; font: 9.5pt/1.3 system-ui, "Segoe UI", "Helvetica Neue", Arial, "Noto Sans", "Noto Sans SC",
-  "PingFang SC", "Microsoft YaHei", "WenQuanYi Zen Hei", sans-serif; -webkit-print-color-adjust: exact; print-color-adjust: exact }
+html { color: #111; background: #fff; font: 9.5pt/1.3 "Segoe UI", "Helvetica Neue", Roboto, Arial, "Noto Sans", "Noto Sans SC",
+  "PingFang SC", "Microsoft YaHei", "WenQuanYi Zen Hei", "DejaVu Sans Condensed", system-ui, sans-serif; -webkit-print-color-adjust: exact; print-color-adjust: exact }
 body { width: 186mm; margin: 0 auto }
 svg { display: block; overflow: visible }
 section + section { break-before: page }
@@ -28,17 +28,17 @@ article { break-inside: avoid; border-top: .6mm solid #111; padding-top: 1.6mm; 
 .head .facts { flex: 1; margin: 0 }
 .points { font-size: 9.5pt; white-space: nowrap }
 .points b { font-size: 17pt; line-height: 1 }
-.said { display: flex; gap: 6mm; margin: 1mm 0 .5mm }
+.said { display: flex; gap: 6mm; margin: .5mm 0 0 }
 .said p { margin: 0; flex: 1 1 0 }
 .said b { display: block; font-size: 8.5pt; font-weight: 600; color: #333 }
-.said span { font-size: 11.5pt }
+.said span { font-size: 11.5pt; line-height: 1.2 }
 .said .next { flex: 1.5 1 0; border-left: 1.4mm solid #111; padding-left: 2.2mm }
 .said .next span { font-weight: 700 }
 .said .silent { border-left-color: #bbb; align-self: center }
 .said .silent span { font-weight: 400 }
-.below { display: flex; gap: 3.5mm; align-items: flex-start; margin-top: 1mm }
+.below { display: flex; gap: 3.5mm; align-items: flex-start; margin-top: .5mm }
 .measures { flex: 1; list-style: none; margin: 0; padding: 0 }
-.measures li { padding: 0 0 1.3mm; margin: 0 0 1.3mm; border-bottom: .2mm solid #bbb; line-height: 1.2 }
+.measures li { padding: 0 0 1.2mm; margin: 0 0 1.2mm; border-bottom: .2mm solid #bbb; line-height: 1.2 }
 .measures li:last-child { border: 0 }
 .measures .what { display: block; font-size: 8.5pt }
 .measures .value { font-size: 11.5pt; font-weight: 700; white-space: nowrap }
@@ -46,9 +46,9 @@ article { break-inside: avoid; border-top: .6mm solid #111; padding-top: 1.6mm; 
 .measures .range { display: block; font-size: 8pt; color: #333 }
 .unknown { color: #6b6b6b; font-weight: 400 !important }
 figure { margin: 0 }
-figcaption { font-size: 7.5pt; line-height: 1.2; color: #333 }
+figcaption { font-size: 7.5pt; line-height: 1.15; color: #333 }
 figure.curve { width: 66mm }
-figure.curve .name { font-size: 8.5pt; font-weight: 600; color: #111 }
+figure.curve .name { font-size: 8pt; font-weight: 600; color: #111 }
 .legend { display: flex; flex-wrap: wrap; gap: 0 4mm; font-size: 8pt; color: #333; margin: 0 }
 .legend svg { display: inline-block; width: 5mm; height: 2.6mm; vertical-align: -.3mm; margin-right: 1mm }
 .floor { stroke: #111; stroke-width: .3 }
