@@ -74,7 +74,7 @@ def decode(data: bytes, kind: type[MessageT]) -> MessageT:
     """Read a message of the type expected on a topic.
 
     Raises:
-        CodecError: truncated, corrupt, of another type or of another version.
+        CodecError: truncated, corrupt, nested too deeply, of another type or of another version.
     """
     if len(data) < 2:
         raise CodecError(f"{len(data)} bytes are no message")
@@ -85,7 +85,7 @@ def decode(data: bytes, kind: type[MessageT]) -> MessageT:
         raise CodecError(f"a {found.__name__ if found else f'message of unknown type {data[1]}'} where {kind.__name__} belongs")
     try:
         message: MessageT = _DECODERS[kind].decode(memoryview(data)[2:])
-    except (msgspec.MsgspecError, ValueError, OverflowError, struct.error) as error:
+    except (msgspec.MsgspecError, ValueError, OverflowError, RecursionError, struct.error) as error:
         raise CodecError(f"corrupt {kind.__name__}: {error}") from error
     return message
 

@@ -135,7 +135,7 @@ class PartDecoder:
         try:
             mark = msgspec.json.decode(marked.data, type=Mark)
             entries = tuple(entry(message.channel_id, message.publish_time, message.data) for message in rest)
-        except (ValueError, KeyError) as error:
+        except (ValueError, KeyError, RecursionError) as error:
             raise DamageError(f"the chunk of message {number} holds what no lesson does") from error
         begins = mark.segment_ns != self._segment_ns
         self._segment_ns = mark.segment_ns

@@ -246,6 +246,16 @@ def test_an_array_of_wrong_shape_dtype_or_value_is_refused_by_the_reader(keypoin
         codec.decode(data, Observation)
 
 
+@pytest.mark.parametrize("name", examples())
+def test_what_a_stranger_nested_deeper_than_the_stack_ends_nobody_who_reads(name: str) -> None:
+    """A field that this version does not know is skipped, and what is skipped may be nested."""
+    message = examples()[name]
+    fields = {each: getattr(message, each) for each in type(message).__struct_fields__}
+    data = codec.encode(message)[:2] + codec._ENCODER.encode(fields | {"of_tomorrow": msgspec.Raw(b"\x91" * 20_000 + b"\xc0")})
+    with pytest.raises(codec.CodecError, match="corrupt"):
+        codec.decode(data, type(message))
+
+
 def test_a_decoded_array_can_be_written_to() -> None:
     good = examples()["observation"]
     decoded = codec.decode(codec.encode(good), Observation)

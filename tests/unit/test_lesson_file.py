@@ -5,15 +5,15 @@ from pathlib import Path
 
 import pytest
 from mcap.reader import make_reader
-from mcap.records import Metadata
+from mcap.records import Message, Metadata
 
 from models.errors import UserError
 from models.messages.lesson import FusionLog
 from services.lesson import lesson_header
-from services.lesson.layout import PART_SUFFIX
-from services.lesson.lesson_file import LessonWriter
-from services.lesson.lesson_reader import open_lesson
-from services.lesson.mcap_records import MAGIC, encode
+from services.lesson.layout import MARK, PART_SUFFIX
+from services.lesson.lesson_file import LessonWriter, _chunk
+from services.lesson.lesson_reader import PartDecoder, open_lesson
+from services.lesson.mcap_records import MAGIC, DamageError, OpenChunk, encode
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
 
 LATER_NS = BEGIN_NS + 10 * SECOND_NS
@@ -113,6 +113,13 @@ def test_a_finished_file_is_finished_even_if_its_new_name_cannot_be_made_safe(
     monkeypatch.setattr("services.lesson.lesson_file.sync_folder", fail)
     with open_lesson(writer.finish()) as lesson:
         assert lesson.summary().parts == 1
+
+
+def test_a_mark_that_a_stranger_nested_deeper_than_the_stack_is_damage() -> None:
+    mark = b'{"of_tomorrow":' + b"[" * 20_000 + b"]" * 20_000 + b',"segment_ns":1,"sequence":0}'
+    messages = [Message(MARK, BEGIN_NS, mark, BEGIN_NS, 0)]
+    with pytest.raises(DamageError, match="message 0 holds what no lesson does"):
+        PartDecoder().decode(OpenChunk(_chunk(messages), tuple(messages)))
 
 
 def test_a_header_holds_any_title(tmp_path: Path) -> None:
