@@ -32,13 +32,25 @@ class JpegFrame:
 
     def image(self, reduction: int = 1) -> UInt8:
         """The picture as RGB, reduced while it is decoded, which saves up to half the work. See `Frame.image`."""
-        picture = cv2.imdecode(np.frombuffer(self.data, np.uint8), _FLAGS[reduction]) if is_whole(self.data) else None
-        if picture is None:
+        width, height = (-(-side // reduction) for side in self.size_px)
+        picture = _decoded(self.data, _FLAGS[reduction])
+        # Damage to the size goes unnoticed, and a crop would be cut out at the wrong place.
+        if picture is None or picture.shape != (height, width, 3):
             raise PictureError(f"camera '{self.camera}': picture {self.index} is damaged")
-        return cast(UInt8, picture)
+        return picture
 
 
 def is_whole(data: bytes) -> bool:
     """Whether a JPEG has its beginning and its end; OpenCV would fill a missing rest with grey and say nothing."""
     # A muxer may pad packets to an even length.
     return data.startswith(_START) and data[-8:].rstrip(b"\x00").endswith(_END)
+
+
+def _decoded(data: bytes, flags: int) -> UInt8 | None:
+    """A picture; None if it is none."""
+    if not is_whole(data):
+        return None
+    try:
+        return cast("UInt8 | None", cv2.imdecode(np.frombuffer(data, np.uint8), flags))
+    except cv2.error:  # Of a size that was damaged, for which there is no memory.
+        return None

@@ -1,5 +1,6 @@
 """A file plays like a camera: every picture at its time, the newest one to who comes late, a loop as a new epoch."""
 
+import struct
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -109,6 +110,19 @@ def test_a_damaged_picture_is_an_error_of_its_own_and_names_the_camera() -> None
     broken = JpegFrame("cam07", 0, 12, 0, SIZE_PX, frame.data[: len(frame.data) // 2])
     with pytest.raises(PictureError, match=r"cam07.*picture 12"):
         broken.image()
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "reduction"),
+    [(40_000, 40_000, 1), (96, 8, 1), (3000, 128, 2), (1, 1, 4), (SIZE_PX[0] + 1, SIZE_PX[1], 1), (SIZE_PX[0] + 1, SIZE_PX[1], 4)],
+)
+def test_a_picture_whose_size_was_damaged_is_no_picture_and_ends_nobody(width: int, height: int, reduction: int) -> None:
+    """A crop would be cut out of it at the wrong place; of the largest OpenCV makes an error of its own."""
+    data = bytearray(video_of([plain_picture(90)]).frame(0, 0, 0).data)
+    size_at = data.index(b"\xff\xc0") + 5
+    data[size_at : size_at + 4] = struct.pack(">HH", height, width)
+    with pytest.raises(PictureError, match=r"cam07.*picture 12 is damaged"):
+        JpegFrame("cam07", 0, 12, 0, SIZE_PX, bytes(data)).image(reduction)
 
 
 def test_a_file_written_and_loaded_shows_the_same_pictures(tmp_path: Path) -> None:
