@@ -1,5 +1,6 @@
 """What fusion asks of one camera (fusion -> edge): how often, with which network, and where to look."""
 
+import math
 from typing import Literal
 
 import msgspec
@@ -8,10 +9,16 @@ from models.messages.observation import MAX_PX, Crop, require_count
 
 PoseNetwork = Literal["thunder", "lightning"]
 MAX_RATE_HZ = 1000.0
+CARRIED_S = 0.5
+"""A crop is carried no further than this from its own time."""
 
 
 class CropPrediction(msgspec.Struct, frozen=True):
-    """Where fusion expects the pupil, with its motion, so that the edge can carry it to a frame's own time."""
+    """Where fusion expects the pupil, with its motion, so that the edge can carry it to a frame's own time.
+
+    The crop has at least one pixel, and wherever it is carried, the pose that is seen in it and the crop around that stay within
+    `MAX_PX`: otherwise looking there would lead to an observation that is none.
+    """
 
     crop: Crop
     t_ns: int
@@ -19,11 +26,15 @@ class CropPrediction(msgspec.Struct, frozen=True):
     velocity_y_px_s: float
 
     def __post_init__(self) -> None:
-        if not all(abs(value) <= MAX_PX for value in (self.velocity_x_px_s, self.velocity_y_px_s)):
-            raise ValueError(f"a crop's velocity must be within +-{MAX_PX:g} px/s")
+        crop = self.crop
+        speed_px_s = math.hypot(self.velocity_x_px_s, self.velocity_y_px_s)
+        # The crop around a pose in a crop is less than twice as large.
+        reach_px = max(abs(crop.centre_x_px), abs(crop.centre_y_px)) + 2 * crop.side_px + CARRIED_S * speed_px_s
+        if not (crop.side_px >= 1 and reach_px <= MAX_PX):
+            raise ValueError(f"a prediction needs a crop of at least 1 px that stays within +-{MAX_PX:g} px, not {self}")
 
     def at(self, t_ns: int) -> Crop:
-        """The crop carried at constant velocity to `t_ns` (CLOCK_MONOTONIC), which must not be far from its own time."""
+        """The crop carried at constant velocity to `t_ns` (CLOCK_MONOTONIC), at most `CARRIED_S` from its own time."""
         seconds = (t_ns - self.t_ns) * 1e-9
         return Crop(
             self.crop.centre_x_px + self.velocity_x_px_s * seconds,

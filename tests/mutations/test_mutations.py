@@ -21,12 +21,16 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from edge.meter import Meter
+from edge.observe import EdgeConfig, EdgeState, Networks, Stages, observe
 from edge.process import Plan
-from edge.turns import default_control
+from edge.turns import default_control, is_due
+from models.arrays import UInt8
 from models.messages import codec, topics
+from models.messages.control import ViewControl
 from models.messages.feedback import ActivityRequest, Feedback
 from models.messages.lesson import LessonRequest
 from models.messages.motion import JointState, Motion
+from models.messages.observation import Observation
 from models.messages.pupil import PupilTurn
 from models.process import Delivery, Resources
 from services.bus.mailbox import Mailbox
@@ -40,11 +44,15 @@ from services.tablet.process import decoded
 from services.tablet.room_state import RoomState
 from services.tablet.server import TabletServer
 from tests.browser.room import Room
+from tests.fake_networks import FakeDetector, FakeEstimate
 from tests.integration.waiting import until
 from tests.mutations.consumers import topics_of
 from tests.mutations.feed import COUNTS, GROWTH_MB, FeedBus, Growth, context_of, deliveries
 from tests.mutations.samples import JOINTS_M, RIG, control, healths, log, motion, observation
+from tests.small_video import plain_picture, video_of
 from tests.taught import performance, some
+
+GREY = video_of([plain_picture(128)] * 2, RIG.names[0])
 
 
 def filmed(enough: Callable[[], bool]) -> Iterator[Delivery]:
@@ -78,17 +86,39 @@ def test_fusion_survives_and_then_finds_the_pupil(topic: str, count: int, tmp_pa
     assert growth.mb < GROWTH_MB
 
 
+class SeesEverywhere:
+    """A pose network that is sure of somebody as large as any crop, wherever it is told to look."""
+
+    name, size_px = "thunder", 8
+
+    def estimate(self, _crop_rgb: UInt8) -> FakeEstimate:
+        corners = np.tile(np.array(((0, 0), (1, 1), (1, 0), (0, 1)), np.float32), (5, 1))[:17]
+        return FakeEstimate(corners, np.full(17, 0.9, np.float32), np.full(17, 1e-3, np.float32))
+
+
+def filmed_by(control: ViewControl, now_ns: int) -> Iterator[Observation]:
+    """What a camera that obeys a plan makes of two pictures: where it is told to look, and where that leads."""
+    state, networks = EdgeState(), Networks(SeesEverywhere(), FakeDetector)
+    for number in range(2):
+        frame = GREY.frame(0, number, now_ns + number * 33_333_333)
+        is_due(frame.t_mid_ns, now_ns, control)
+        state, seen = observe(state, frame, networks, control, EdgeConfig(), Stages(lambda: 0))
+        yield codec.decode(codec.encode(seen), Observation)
+
+
 @pytest.mark.parametrize("count", COUNTS)
 @pytest.mark.parametrize("topic", topics_of("edge.process"))
 def test_a_cameras_plan_survives_and_the_next_true_one_is_obeyed(topic: str, count: int) -> None:
     camera, growth, mailbox = RIG.names[0], Growth(), Mailbox(1)
     meter = Meter(f"edge-{camera}", 1, camera, t_report_ns=0, t_picture_ns=0)
     plan = Plan(mailbox, default_control(camera, 0, 4, 0, 30.0), meter.refused_plan)
+    now_ns = time.monotonic_ns()  # The mutants' own time for ever: a prediction is followed for less than half a second.
     for delivery in deliveries(topic, count, growth):
         mailbox.put(topic, delivery.payload)
-        obeyed = plan.at(time.monotonic_ns())
+        obeyed = plan.at(now_ns)
         assert obeyed.camera == camera
         assert 0 <= obeyed.rate_hz <= 1000
+        assert [seen.camera for seen in filmed_by(obeyed, now_ns)] == [camera] * 2
     refused = meter.refused
     assert refused > count // 10
     told = meter.report(1, 10.0, "thunder", (), Resources(0.1, 100.0))

@@ -290,6 +290,32 @@ def test_a_crop_that_is_no_region_is_refused_by_the_reader(side_px: float) -> No
         codec.decode(codec.encode(good)[:2] + codec._ENCODER.encode(fields), ViewControl)
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"side_px": 5e-324},
+        {"side_px": 0.9},
+        {"side_px": 6e5},
+        {"centre_x_px": 1e6},
+        {"centre_y_px": -1e6},
+        {"velocity_x_px_s": 2e6},
+        {"velocity_y_px_s": -1e308},
+        {"velocity_y_px_s": float("nan")},
+        {"centre_x_px": 5e5, "velocity_x_px_s": 9e5, "side_px": 1e5},
+    ],
+)
+def test_a_place_at_which_nothing_can_be_observed_is_refused_by_the_reader(change: dict[str, float]) -> None:
+    """Whoever looked there would make an observation that is none."""
+    good = examples()["control"]
+    assert isinstance(good, ViewControl)
+    assert good.prediction is not None
+    crop, prediction = msgspec.structs.asdict(good.prediction.crop), msgspec.structs.asdict(good.prediction)
+    crop |= {name: value for name, value in change.items() if name in crop}
+    prediction |= {name: value for name, value in change.items() if name in prediction} | {"crop": crop}
+    with pytest.raises(codec.CodecError, match="prediction"):
+        codec.decode(changed(good, prediction=prediction), ViewControl)
+
+
 @pytest.mark.parametrize("value", [-5, 2**63])
 @pytest.mark.parametrize(
     ("name", "field"),

@@ -7,7 +7,7 @@ import pytest
 
 from edge.perception.tracking import Look, TrackingConfig, Tracks, choose_looks, wants_detection, with_detections, with_poses
 from models.arrays import Float
-from models.messages.control import CropPrediction, ViewControl
+from models.messages.control import CARRIED_S, CropPrediction, ViewControl
 from models.messages.observation import Crop, Person
 
 CONFIG = TrackingConfig()
@@ -172,3 +172,7 @@ def test_a_seam_leaves_the_pupils_place_as_a_guess_and_forgets_the_others() -> N
     assert not wants_detection(after, FOLLOW, 7 * MS, CONFIG)
     empty = seen(after, FOLLOW, 7 * MS, {0: (200, 350)}, score=0.05)
     assert wants_detection(empty, FOLLOW, 40 * MS, CONFIG)
+
+
+def test_no_prediction_is_followed_for_longer_than_it_is_known_to_stay_where_one_can_look() -> None:
+    assert CONFIG.prediction_ns * 1e-9 <= CARRIED_S
