@@ -43,6 +43,10 @@ class Tick:
     t_ns: int
 
 
+Ignored = Literal["not_calibrated", "of_the_future", "of_a_lone_epoch", "beyond_its_epoch", "of_a_past_epoch"]
+"""Why an observation is not fused."""
+
+
 @dataclass(frozen=True)
 class FusionOutput:
     """What one event led to.
@@ -51,15 +55,13 @@ class FusionOutput:
         motions: live and smooth motions that became due; `t_published_ns` is the tick's time.
         found: whether the pupil is chosen.
         searching: by camera name, whether it should look at everyone; empty but at ticks.
+        ignored: why the observation was not fused; None if it was, and at ticks.
     """
 
     motions: tuple[Motion, ...] = ()
     found: bool = False
     searching: dict[str, bool] = field(default_factory=dict)
-
-
-Ignored = Literal["not_calibrated", "of_the_future", "of_a_lone_epoch", "beyond_its_epoch", "of_a_past_epoch"]
-"""Why an observation is not fused."""
+    ignored: Ignored | None = None
 
 
 @dataclass(eq=False)
@@ -100,7 +102,7 @@ def step(state: FusionState, event: Observation | Tick, config: FusionConfig) ->
     reason = _observe(state, event, config)
     if reason is not None:
         state.ignored[event.camera, reason] = state.ignored.get((event.camera, reason), 0) + 1
-    return state, FusionOutput(found=bool(state.epochs) and state.epochs[-1].pupil is not None)
+    return state, FusionOutput(found=bool(state.epochs) and state.epochs[-1].pupil is not None, ignored=reason)
 
 
 def predict_views(state: FusionState, t_ns: int) -> dict[str, CropPrediction | None]:

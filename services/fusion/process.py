@@ -170,7 +170,8 @@ class FusionLoop:
     def _step(self, event: Observation | Tick) -> None:
         began_ns = time.thread_time_ns()
         self._state, output = step(self._state, event, self._config)
-        if isinstance(event, Observation):
+        # One that was refused may be of a time that never comes: all that its camera sees from then on would be taken for older.
+        if isinstance(event, Observation) and output.ignored is None:
             self._agreement.observe(event)
         self._second.spent_ns += time.thread_time_ns() - began_ns
         self._found = output.found

@@ -1,5 +1,6 @@
 """The fusion process's loop over the in-memory bus: what goes in, what must come out, and what must not stop it."""
 
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,9 +22,13 @@ from models.process import Bus, Subscription
 from services.bus.memory import MemoryRouter
 from services.fusion.config import PRESETS
 from services.fusion.pipeline import Tick, initial_state, step
+from services.fusion.process import FusionLoop
+from services.support.cpu import CpuMeter
 from tests.integration.fusion_room import RIG, fusion
 from tests.integration.waiting import DEADLINE_S, until
-from tests.mutations.samples import feedback
+from tests.mutations.feed import FeedBus, context_of
+from tests.mutations.samples import feedback, observation
+from tests.synthetic.gym import T0_NS, Gym, knocked
 from tests.synthetic.person import Person as Pupil
 
 PUPIL = Pupil()
@@ -197,6 +202,19 @@ def test_cameras_that_were_exchanged_are_named(tmp_path: Path) -> None:
             return told(health, "cameras_exchanged", "cam0 and cam1 seem to be exchanged")
 
         until(named, "cam0 and cam1 named as exchanged")
+
+
+@pytest.mark.slow
+def test_one_picture_that_is_refused_does_not_keep_its_camera_from_being_named_once_it_is_moved(tmp_path: Path) -> None:
+    stop = threading.Event()
+    loop = FusionLoop(context_of("fusion", FeedBus((), stop), stop, tmp_path), CpuMeter())
+    loop._step(Tick(T0_NS))
+    loop._step(observation(2, 2**62))
+    for event in Gym(rig=knocked(RIG, 2), seconds=14.0).events():
+        loop._step(event)
+    found = loop._agreement.judge()
+    assert found is not None
+    assert found.strangers == ("cam2",)
 
 
 @pytest.mark.slow

@@ -35,6 +35,7 @@ from models.messages.pupil import PupilTurn
 from models.process import Delivery, Resources
 from services.bus.mailbox import Mailbox
 from services.evaluation.process import EvaluationLoop
+from services.fusion.pipeline import Tick
 from services.fusion.process import FusionLoop
 from services.fusion.warm_up import warm_up
 from services.lesson.folder_lock import lock
@@ -50,6 +51,7 @@ from tests.mutations.consumers import topics_of
 from tests.mutations.feed import COUNTS, GROWTH_MB, FeedBus, Growth, context_of, deliveries
 from tests.mutations.samples import JOINTS_M, RIG, control, healths, log, motion, observation
 from tests.small_video import plain_picture, video_of
+from tests.synthetic.gym import T0_NS, Gym, knocked
 from tests.taught import performance, some
 
 GREY = video_of([plain_picture(128)] * 2, RIG.names[0])
@@ -78,12 +80,26 @@ def test_fusion_survives_and_then_finds_the_pupil(topic: str, count: int, tmp_pa
 
     told_s = time.monotonic() + 2.5
     bus = FeedBus(chain(deliveries(topic, count, growth), filmed(whole)), stop)
-    FusionLoop(context_of("fusion", bus, stop, tmp_path), CpuMeter()).run()
+    loop = FusionLoop(context_of("fusion", bus, stop, tmp_path), CpuMeter())
+    loop.run()
     seen = codec.decode(bus.newest[topics.motion("live")], Motion)
     assert (seen.states == JointState.SEEN).all()
     assert abs(seen.joints_m - JOINTS_M).max() < 0.1
     assert sum(health.fusion.rejected for health in bus.healths if health.fusion is not None) > 0
     assert growth.mb < GROWTH_MB
+    assert strangers_after_a_knock(loop) == (RIG.names[0],)
+
+
+def strangers_after_a_knock(loop: FusionLoop) -> tuple[str, ...]:
+    """Whom fusion names when the first camera, of which the mutants were, is moved from now on; its seconds take less of ours."""
+    later_ns = time.monotonic_ns() - T0_NS
+    for event in Gym(rig=knocked(RIG, 0), seconds=14.0).events():
+        if isinstance(event, Tick):
+            loop._step(Tick(event.t_ns + later_ns))
+        else:
+            loop._step(msgspec.structs.replace(event, t_mid_ns=event.t_mid_ns + later_ns))
+    found = loop._agreement.judge()
+    return () if found is None else found.strangers
 
 
 class SeesEverywhere:

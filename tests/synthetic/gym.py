@@ -46,6 +46,16 @@ def ring_rig(cameras: int = 4, radius_m: float = 6.2, height_m: float = 2.2, *, 
     return Rig(tuple(made))
 
 
+def knocked(rig: Rig, index: int) -> Rig:
+    """The calibration of cameras of which one was turned since."""
+    camera = rig.cameras[index]
+    turn = np.array(((np.cos(0.12), 0.0, np.sin(0.12)), (0.0, 1.0, 0.0), (-np.sin(0.12), 0.0, np.cos(0.12))))
+    tilt = np.array(((1.0, 0.0, 0.0), (0.0, np.cos(0.12), -np.sin(0.12)), (0.0, np.sin(0.12), np.cos(0.12))))
+    rotation = tilt @ turn @ camera.rotation
+    moved = replace(camera, rotation=rotation, translation_m=-rotation @ camera.centre_m)
+    return Rig((*rig.cameras[:index], moved, *rig.cameras[index + 1 :]))
+
+
 @dataclass(frozen=True, kw_only=True)
 class Gym:
     """What is filmed, and how well the network sees it.

@@ -10,7 +10,7 @@ from models.camera.rig import Rig
 from models.messages.observation import Observation
 from services.fusion.agreement import Agreement, Disagreement
 from services.fusion.config import SightingConfig
-from tests.synthetic.gym import Gym, ring_rig
+from tests.synthetic.gym import Gym, knocked, ring_rig
 from tests.synthetic.person import Person
 
 pytestmark = pytest.mark.slow
@@ -21,16 +21,6 @@ SECONDS = 14.0
 def calibrated_as(rig: Rig, order: tuple[int, ...]) -> Rig:
     """The same cameras' names with the calibration of others."""
     return Rig(tuple(replace(rig.cameras[source], name=name) for name, source in zip(rig.names, order, strict=True)))
-
-
-def knocked(rig: Rig, index: int) -> Rig:
-    """The calibration of cameras of which one was turned since."""
-    camera = rig.cameras[index]
-    turn = np.array(((np.cos(0.12), 0.0, np.sin(0.12)), (0.0, 1.0, 0.0), (-np.sin(0.12), 0.0, np.cos(0.12))))
-    tilt = np.array(((1.0, 0.0, 0.0), (0.0, np.cos(0.12), -np.sin(0.12)), (0.0, np.sin(0.12), np.cos(0.12))))
-    rotation = tilt @ turn @ camera.rotation
-    moved = replace(camera, rotation=rotation, translation_m=-rotation @ camera.centre_m)
-    return Rig((*rig.cameras[:index], moved, *rig.cameras[index + 1 :]))
 
 
 def told(rig: Rig, gym: Gym) -> Disagreement | None:
