@@ -7,7 +7,6 @@ so that interpolation can't fake them. No figure is measured across a seam of th
 """
 
 import argparse
-import json
 import os
 import statistics
 import threading
@@ -28,6 +27,7 @@ from models.messages.motion import JointState
 from models.messages.observation import Observation
 from services.bus.zenoh_bus import open_client
 from services.tablet import motion_frame
+from tests.acknowledged import Acknowledged
 from tests.bench.report import Report
 from tests.bench.running_box import CpuMeter, CpuUsed, processes, rss_mb, running_box
 
@@ -94,7 +94,7 @@ def watch_page(url: str, heard: Heard, stop: threading.Event) -> None:
     while not stop.is_set():
         try:
             with connect(url, compression=None, open_timeout=2) as socket:
-                counts = {"motions": 0, "statuses": 0}
+                acknowledged = Acknowledged()
                 while not stop.is_set():
                     message = socket.recv(timeout=5)
                     now_ns = time.monotonic_ns()
@@ -102,10 +102,7 @@ def watch_page(url: str, heard: Heard, stop: threading.Event) -> None:
                         frame = motion_frame.unpack(message)
                         seen = int((frame.states == JointState.SEEN).sum())
                         heard.motions.append(LiveMotion(now_ns, frame.t_newest_ns, frame.epoch, frame.t_ns, seen))
-                        counts["motions"] += 1
-                    else:
-                        counts["statuses"] += 1
-                    socket.send(json.dumps({"type": "ack", **counts}))
+                    socket.send(acknowledged.after(message))
         except (OSError, TimeoutError, WebSocketException):
             time.sleep(0.2)
 

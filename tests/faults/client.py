@@ -12,6 +12,7 @@ from websockets.sync.client import connect
 
 from models.messages.motion import JointState
 from services.tablet import motion_frame
+from tests.acknowledged import Acknowledged
 from tests.integration.waiting import until
 
 MOST_JOINTS = 9
@@ -108,7 +109,7 @@ class Client:
 
     def _watch(self) -> None:
         with connect(self._url, compression=None, open_timeout=1, close_timeout=1) as socket:
-            counts = {"motions": 0, "statuses": 0}
+            acknowledged = Acknowledged()
             while not self._stop.is_set():
                 try:
                     message = socket.recv(timeout=0.5)
@@ -116,11 +117,9 @@ class Client:
                     continue  # A server that hangs; the connection ends with it.
                 now_s = time.monotonic()
                 if isinstance(message, bytes):
-                    counts["motions"] += 1
                     frame = motion_frame.unpack(message)
                     if int((frame.states == JointState.SEEN).sum()) >= MOST_JOINTS:
                         self.seen.figures_s.append(now_s)
-                else:
-                    counts["statuses"] += 1
-                    self.seen.statuses.append((now_s, json.loads(message)))
-                socket.send(json.dumps({"type": "ack", **counts}))
+                elif (said := json.loads(message))["type"] == "status":
+                    self.seen.statuses.append((now_s, said))
+                socket.send(acknowledged.after(message))

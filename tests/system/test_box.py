@@ -21,6 +21,7 @@ from models.messages.motion import JointState
 from models.skeleton import coco
 from services.tablet import motion_frame
 from services.tablet.motion_frame import MotionFrame
+from tests.acknowledged import Acknowledged
 from tests.installed import ROOT, require_footage, require_lesson, require_networks
 from tests.integration.waiting import free_port, until
 from tests.lifeline import bound
@@ -91,14 +92,13 @@ class Tablet:
 
     def __init__(self, socket: ClientConnection) -> None:
         self._socket = socket
-        self._counts = {"motions": 0, "statuses": 0}
+        self._acknowledged = Acknowledged()
 
     def motion(self) -> MotionFrame:
         """The next motion."""
         while True:
             message = self._socket.recv(timeout=30)
-            self._counts["motions" if isinstance(message, bytes) else "statuses"] += 1
-            self._socket.send(json.dumps({"type": "ack", **self._counts}))
+            self._socket.send(self._acknowledged.after(message))
             if isinstance(message, bytes):
                 return motion_frame.unpack(message)
 
