@@ -15,7 +15,8 @@ def reserve(folder: Path, name: str, suffix: str) -> Path:
     """An empty file with the first of the numbered names that is free, to be replaced by what shall be called that.
 
     It is made first and then replaced, since a rename overwrites silently what another has put there meanwhile. (A second link to
-    the file would do the same, but a memory stick's file system knows none.)
+    the file would do the same, but a memory stick's file system knows none.) A name whose file is empty is free: a crash came
+    between the two.
 
     Raises:
         OSError: nothing can be written there.
@@ -25,7 +26,8 @@ def reserve(folder: Path, name: str, suffix: str) -> Path:
         try:
             path.open("xb").close()
         except FileExistsError:
-            continue
+            if not _is_empty(path):
+                continue
         return path
     raise AssertionError("the numbers are endless")
 
@@ -42,3 +44,7 @@ def rename_free(path: Path, name: str, suffix: str) -> Path:
     except OSError:
         target.unlink(missing_ok=True)
         raise
+
+
+def _is_empty(path: Path) -> bool:
+    return path.is_file() and path.lstat().st_size == 0

@@ -58,7 +58,11 @@ def recover(folder: Path, run_ns: int) -> LessonWriter | None:
 
 
 def _reopened(path: Path) -> LessonWriter | None:
-    """As `reopen`; None, having said so, of a file that this KineBox cannot recover."""
+    """As `reopen`; None, having said so, of a file that this KineBox cannot recover, or in which there is nothing to recover."""
+    if path.stat().st_size == 0:  # The crash came before the lesson's first byte, or before it was given this name.
+        path.unlink()
+        log.info("an empty file was removed", lesson=path.name)
+        return None
     try:
         return reopen(path)
     except NewerLessonError as error:

@@ -21,7 +21,7 @@ from models.errors import UserError
 from models.messages.lesson import FusionLog
 from services.lesson import index, lesson_header
 from services.lesson.layout import PART_SUFFIX, SUFFIX
-from services.lesson.lesson_file import Contents, LessonWriter
+from services.lesson.lesson_file import Contents, LessonWriter, mark_ended
 from services.lesson.lesson_reader import LessonPart, open_lesson
 from services.lesson.mcap_records import walk
 from services.lesson.recovery import DAMAGED_SUFFIX, recover, reopen
@@ -251,6 +251,40 @@ def test_nothing_that_was_there_before_is_overwritten_by_what_is_recovered(tmp_p
     with open_lesson(tmp_path / f"a-2{SUFFIX}") as lesson:
         assert as_logged(list(lesson.parts())) == list(PARTS[:2])
     assert not list(tmp_path.glob(f"*{PART_SUFFIX}"))
+
+
+def die(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("renamed_before", [0, 1], ids=["while it is marked as ended", "while it is finished"])
+def test_a_crash_between_a_free_name_and_its_file_leaves_one_lesson_with_that_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, renamed_before: int
+) -> None:
+    writer = LessonWriter.create(tmp_path, "lesson", header())
+    writer.append(PARTS[0])
+    if renamed_before:
+        writer.path = mark_ended(writer.path)
+    with monkeypatch.context() as killed:
+        killed.setattr(Path, "replace", die)
+        with pytest.raises(KeyboardInterrupt):
+            writer.finish()
+    writer.close()
+    assert [path.stat().st_size for path in tmp_path.iterdir()].count(0) == 1
+    with capture_logs() as logged:
+        assert recover(tmp_path, run_ns=0) is None
+    assert [path.name for path in tmp_path.iterdir() if not path.name.startswith(index.NAME)] == [f"lesson{SUFFIX}"]
+    with open_lesson(tmp_path / f"lesson{SUFFIX}") as lesson:
+        assert as_logged(list(lesson.parts())) == [PARTS[0]]
+    assert {line["log_level"] for line in logged} == {"info"}
+
+
+def test_of_a_lesson_that_died_before_its_first_byte_nothing_is_left_and_nobody_is_warned(tmp_path: Path) -> None:
+    (tmp_path / f"lesson{PART_SUFFIX}").touch()
+    with capture_logs() as logged:
+        assert recover(tmp_path, run_ns=0) is None
+    assert list(tmp_path.iterdir()) == []
+    assert [line["log_level"] for line in logged] == ["info"]
 
 
 def test_an_unfinished_lesson_of_a_newer_kinebox_waits_for_the_update(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
