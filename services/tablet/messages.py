@@ -136,7 +136,8 @@ class Status(_Model):
     latency: Latency | None
     pupil: Literal["unknown", "searching", "found"]
     cpu_load: Annotated[float | None, Field(description="share of the granted CPU that is in use, 0 to 1")]
-    recording: Recording | None
+    recording: Annotated[Recording | None, Field(description="null: nothing is recorded, or the recorder is not heard")]
+    nothing_recorded: Annotated[bool, Field(description="for certain: not while the recorder is not heard")]
     replay: Replay | None
     evaluation: EvaluationStatus
     machine: MachineStatus | None

@@ -7,7 +7,7 @@ import math
 from collections import deque
 
 from models.messages.feedback import ANY
-from models.messages.health import EvaluationHealth, Health, Restarts, SupervisorHealth
+from models.messages.health import EvaluationHealth, Health, RecorderHealth, Restarts, SupervisorHealth
 from models.messages.motion import JointState, Motion
 from models.messages.trouble import CALIBRATION_CODES, MACHINE_CODES, CalibrationCode
 from models.process import EDGE, EVALUATION, RECORDER, REPLAY, ROUTER, Playback, process_name
@@ -156,6 +156,7 @@ class RoomState:
             machine=self._machine(now_ns),
             calibration=_calibration(fusion_health),
             recording=self.recording(now_ns),
+            nothing_recorded=self.nothing_recorded(now_ns),
             replay=self._replay(now_ns),
             evaluation=self._evaluates(now_ns),
             cameras=[self._camera(name, name in used, now_ns) for name in self._cameras],
@@ -189,11 +190,19 @@ class RoomState:
 
     def recording(self, now_ns: int) -> Recording | None:
         """What is being recorded, as far as the recorder says so."""
-        health = self._said(RECORDER, now_ns)
-        recorder = health.recorder if health else None
+        recorder = self._recorder(now_ns)
         if recorder is None or not recorder.lesson:
             return None
         return Recording(title=recorder.title, recorded_s=known(recorder.recorded_s), gaps=recorder.gaps)
+
+    def nothing_recorded(self, now_ns: int) -> bool:
+        """Whether nothing is being recorded for certain: a recorder that is not heard may go on, or go on with its lesson soon."""
+        recorder = self._recorder(now_ns)
+        return self._playback is not None or (recorder is not None and not recorder.lesson)
+
+    def _recorder(self, now_ns: int) -> RecorderHealth | None:
+        health = self._said(RECORDER, now_ns)
+        return health.recorder if health else None
 
     def _replay(self, now_ns: int) -> Replay | None:
         # From the start, and not only once the replay process is heard of: what is played must never look live.

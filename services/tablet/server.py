@@ -147,11 +147,11 @@ class TabletServer:
             self._reject_client_message()
             return
         self._tell(self.attempts.corrections)
-        self.show_attempts()
+        self.show_attempts(unchanged=True)  # Whoever asked for what is so already waits for an answer, too.
 
     def begin_anew(self) -> None:
-        """A tablet says that the list of attempts begins anew. A lesson that is recorded goes on with its numbers."""
-        if self.room.recording(self._clock_ns()) is not None:
+        """A tablet says that the list of attempts begins anew. A lesson that may be recorded goes on with its numbers."""
+        if not self.room.nothing_recorded(self._clock_ns()):
             self._reject_client_message()
             return
         self._so_far.begin(self._clock_ns())
@@ -180,8 +180,12 @@ class TabletServer:
     def set_alive(self, process: str, alive: bool) -> None:
         """A process joined or left the bus. Everyone is told soon: an outage may end before the next status is due."""
         self.room.set_alive(process, alive, self._clock_ns())
-        if process == EVALUATION and alive and self._chosen is not None:
-            self._tell(self._chosen)  # It was started again, and begins with what the site file says.
+        if process == EVALUATION and alive:
+            # It was started again, and begins with what the site file says; or the bus was away, and it has not heard the latest.
+            if self._chosen is not None:
+                self._tell(self._chosen)
+            if self.attempts.corrections.corrections:
+                self._tell(self.attempts.corrections)
         if self._soon is None:
             self._soon = asyncio.get_running_loop().call_later(TOGETHER_S, self._show_presence)
 
@@ -205,10 +209,10 @@ class TabletServer:
         """Show the room's state to everyone."""
         self.audience.show_status(self.status().model_dump_json())
 
-    def show_attempts(self) -> None:
-        """Show the list of attempts to everyone, if it is another one than was shown last."""
+    def show_attempts(self, *, unchanged: bool = False) -> None:
+        """Show the list of attempts to everyone, if it is another one than was shown last, or is to be shown `unchanged`, too."""
         shown = self._so_far.shown(self._clock_ns(), restarted=self.room.restarted)
-        if shown is not None and shown != self.listed:
+        if shown is not None and (unchanged or shown != self.listed):
             self.listed = shown
             self.audience.show_attempts(shown.model_dump_json())
 

@@ -67,6 +67,7 @@ class Scene:
         machine: what the supervisor measured of the machine.
         evaluating: what the evaluation sees the pupil do; None while there is none.
         recorded_s: length of the lesson that is being recorded; None while none is.
+        recorder: whether the recorder says so; it may be hung, or dead, and go on later.
     """
 
     speed: float = 1.0
@@ -81,6 +82,7 @@ class Scene:
     machine: MachineHealth = MACHINE
     evaluating: Literal["waiting", "moving", "unknown"] | None = "waiting"
     recorded_s: float | None = None
+    recorder: bool = True
 
 
 _OF_ATTEMPTS = (topics.feedback(), topics.attempts_begin(), topics.feedback_request(), topics.pupil_corrections())
@@ -293,7 +295,8 @@ class Room:
         fusion = FusionHealth(29.8, 4.2, 0.83, 0, {}, "found" if scene.pupil == "found" else "searching")
         lesson = self._lesson
         recorder = RecorderHealth("", "", 0.0, 0, 0) if lesson is None else lesson.said(scene.recorded_s or 0.0)
-        self._say(self._fusion, Health("recorder", 98, now_ns, "ok", (), 0.01, 60.0, recorder=recorder))
+        if scene.recorder:
+            self._say(self._fusion, Health("recorder", 98, now_ns, "ok", (), 0.01, 60.0, recorder=recorder))
         if "fusion" not in scene.given_up:
             self._say(
                 self._fusion,

@@ -194,8 +194,15 @@ def test_whose_an_attempt_was_is_corrected_on_every_tablet_and_told_for_the_less
 def test_a_correction_that_nothing_records_says_so(tablet: Page, room: Room) -> None:
     shown = open_live(tablet, room)
     see(shown, room, tried(SHOT, FAULT))
+    expect(tablet.get_by_role("button", name="Begin anew")).to_be_visible()
     tablet.locator(".feedback .who").click()
-    expect(tablet.get_by_role("dialog")).to_contain_text("Nothing is being recorded")
+    sheet = tablet.get_by_role("dialog")
+    expect(sheet).to_contain_text("Nothing is being recorded")
+    # It is gone, and may go on with a lesson when it is back.
+    with_scene(room, recorder=False)
+    expect(sheet).to_contain_text("Whether anything is being recorded is not known")
+    expect(sheet).not_to_contain_text("Nothing is being recorded")
+    expect(tablet.locator(".anew")).to_have_count(0)
 
 
 @pytest.mark.parametrize("language", ["zh", "de", "es"])

@@ -371,6 +371,26 @@ def test_recording_is_shown_while_the_recorder_says_so_and_no_longer() -> None:
     assert state.status(T0 + 5 * S, 0).recording is None
 
 
+def test_that_nothing_is_recorded_is_said_by_the_recorder_and_not_by_its_silence() -> None:
+    state = room()
+    assert not state.status(T0, 0).nothing_recorded, "it may go on with a lesson that was cut short"
+    state.receive_health(Health("recorder", 5, T0, "starting", (Trouble("getting_ready", "lessons are completed"),), 0.0, 50.0), T0)
+    assert not state.status(T0, 0).nothing_recorded
+    state.receive_health(recorder("2026-11-22-7b"), T0)
+    assert not state.status(T0, 0).nothing_recorded
+    assert not state.status(T0 + 4 * S, 0).nothing_recorded
+    state.receive_health(recorder(""), T0 + 5 * S)
+    assert state.status(T0 + 5 * S, 0).nothing_recorded
+    state.set_alive("recorder", False, T0 + 5 * S)
+    assert not state.status(T0 + 5 * S, 0).nothing_recorded
+
+
+def test_of_a_lesson_that_is_played_nothing_is_recorded() -> None:
+    lesson = Playback("lesson.mcap", "7b", began_wall_ns=1_764_000_000 * S, speed=1.0, loop=True)
+    state = RoomState("gym", ("a", "b"), wished_hz=30.0, started_ns=T0, playback=lesson)
+    assert state.status(T0, 0).nothing_recorded
+
+
 def test_what_is_played_never_looks_live_even_before_the_replay_is_heard() -> None:
     lesson = Playback("lesson.mcap", "7b", began_wall_ns=1_764_000_000 * S, speed=0.5, loop=True)
     state = RoomState("gym", ("a", "b"), wished_hz=30.0, started_ns=T0, playback=lesson)

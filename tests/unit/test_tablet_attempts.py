@@ -174,6 +174,7 @@ def test_a_choice_that_the_evaluation_has_not_heard_yet_is_not_undone_by_its_old
 
 def test_the_list_begins_anew_when_a_tablet_says_so(box: Box) -> None:
     box.hear("")
+    box.record("", 0)
     box.server.receive_feedback(feedback(T0))
     assert box.server.listed is not None
     assert [attempt.number for attempt in box.server.listed.attempts] == [1]
@@ -188,11 +189,20 @@ def test_the_list_of_a_lesson_that_is_recorded_does_not_begin_anew_by_a_touch(bo
     box.record("2026-11-22-7b", 0)
     box.server.receive_feedback(feedback(T0))
     box.server.wish(Anew(type="anew"))
+    box.now_ns += 10 * SECOND_NS  # The recorder is not heard any more, and may go on all the same.
+    box.server.wish(Anew(type="anew"))
     assert len(box.server.attempts.shown) == 1
-    assert box.server.status().rejected_client_messages == 1
-    box.now_ns += 10 * SECOND_NS  # the recorder is not heard any more
+    assert box.server.status().rejected_client_messages == 2
+    box.record("", 0)
     box.server.wish(Anew(type="anew"))
     assert box.server.attempts.shown == []
+
+
+def test_the_list_does_not_begin_anew_before_the_recorder_was_heard(box: Box) -> None:
+    box.server.receive_feedback(feedback(T0))
+    box.server.wish(Anew(type="anew"))
+    assert len(box.server.attempts.shown) == 1
+    assert box.server.status().rejected_client_messages == 1
 
 
 def test_the_list_is_sent_only_when_it_is_another_one(box: Box) -> None:
@@ -335,6 +345,16 @@ def test_whose_an_attempt_was_is_corrected_for_all_and_told_for_the_lesson(box: 
     assert box.corrected[-1].corrections == (PupilCorrection(first.id, "8"), PupilCorrection(second.id, ""))
 
 
+def test_whoever_gives_an_attempt_to_the_pupil_that_it_has_is_told_that_it_is_so(box: Box) -> None:
+    box.hear("")
+    told = msgspec.structs.replace(feedback(T0), pupil="7")
+    box.server.receive_feedback(told)
+    shown: list[str] = []
+    box.server.audience.show_attempts = lambda text: shown.append(text)  # type: ignore[method-assign]  # noqa: PLW0108
+    box.server.wish(Correction(type="correction", attempt=told.id, pupil="7"))
+    assert [[attempt["pupil"] for attempt in json.loads(text)["attempts"]] for text in shown] == [["7"]]
+
+
 def test_an_attempt_that_comes_again_does_not_undo_its_correction(box: Box) -> None:
     told = msgspec.structs.replace(feedback(T0), pupil="7")
     box.server.receive_feedback(told)
@@ -370,6 +390,19 @@ def test_what_was_corrected_is_told_again_after_an_interruption_of_the_lesson(bo
     box.record("2026-11-22-7b", 1)
     box.record("another", 2)
     assert len(box.corrected) == 2
+
+
+def test_an_evaluation_that_is_heard_again_is_told_what_was_corrected_meanwhile(box: Box) -> None:
+    box.server._soon = object()  # type: ignore[assignment]  # no loop here tells of presence
+    box.server.receive_feedback(feedback(T0))
+    box.server.set_alive("evaluation", True)
+    assert box.corrected == []
+    box.server.set_alive("fusion", False)  # the router: nobody hears anybody
+    box.server.set_alive("evaluation", False)
+    box.server.correct(feedback(T0).id, "8")
+    box.server.set_alive("fusion", True)
+    box.server.set_alive("evaluation", True)
+    assert box.corrected == [PupilCorrections((PupilCorrection(feedback(T0).id, "8"),))] * 2
 
 
 def test_after_an_interruption_without_corrections_nothing_is_told(box: Box) -> None:

@@ -500,7 +500,13 @@ export interface components {
              * @description share of the granted CPU that is in use, 0 to 1
              */
             cpu_load: number | null;
+            /** @description null: nothing is recorded, or the recorder is not heard */
             recording: components["schemas"]["Recording"] | null;
+            /**
+             * Nothing Recorded
+             * @description for certain: not while the recorder is not heard
+             */
+            nothing_recorded: boolean;
             replay: components["schemas"]["Replay"] | null;
             evaluation: components["schemas"]["EvaluationStatus"];
             machine: components["schemas"]["MachineStatus"] | null;

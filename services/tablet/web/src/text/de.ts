@@ -109,6 +109,8 @@ export const de: Words = {
     correct: (number) => `Wer machte Versuch ${number}?`,
     change: (who) => `${who}. Korrigieren`,
     notKept: 'Es wird nichts aufgenommen, deshalb kommt diese Korrektur in keinen Bericht.',
+    perhapsKept:
+      'Ob gerade aufgenommen wird, ist im Moment nicht bekannt, und damit auch nicht, ob diese Korrektur in einen Bericht kommt.',
   },
 
   feedback: {

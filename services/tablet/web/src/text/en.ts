@@ -153,6 +153,8 @@ export const en = {
     correct: (number: number | string): string => `Whose was attempt ${number}?`,
     change: (who: string): string => `${who}. Correct it`,
     notKept: 'Nothing is being recorded, so this correction does not get into a report.',
+    perhapsKept:
+      'Whether anything is being recorded is not known right now, nor whether this correction gets into a report.',
   },
 
   feedback: {

@@ -110,6 +110,7 @@ export const es: Words = {
     correct: (number) => `¿De quién fue el intento ${number}?`,
     change: (who) => `${who}. Corregir`,
     notKept: 'No se está grabando nada, así que esta corrección no llegará a ningún informe.',
+    perhapsKept: 'Ahora mismo no se sabe si se está grabando, ni si esta corrección llegará a un informe.',
   },
 
   feedback: {

@@ -76,6 +76,7 @@ export const zh: Words = {
     correct: (number) => `第 ${number} 次是谁的？`,
     change: (who) => `${who}。更正`,
     notKept: '现在没有录制，这次更正不会进入报告。',
+    perhapsKept: '目前无法得知是否正在录制，也无法得知这次更正是否会进入报告。',
   },
 
   feedback: {
