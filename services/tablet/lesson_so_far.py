@@ -48,7 +48,9 @@ class LessonSoFar:
         shown = self.attempts.shown
         if len(shown) < KEPT and any(attempt not in self.attempts for attempt in self._recorded):
             return AttemptList(attempts=shown, earlier="recorded")
-        return AttemptList(attempts=shown, earlier="lost" if restarted and self._nobody_knew else "listed")
+        missing = len(shown) < KEPT and next((one.number for one in shown if one.number is not None), 1) > 1
+        lost = missing or (restarted and self._nobody_knew)
+        return AttemptList(attempts=shown, earlier="lost" if lost else "listed")
 
     def begin(self, now_ns: int) -> None:
         """The teacher wants the list to begin anew."""

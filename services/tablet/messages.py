@@ -207,7 +207,7 @@ class AttemptList(_Model):
         Literal["listed", "recorded", "lost"],
         Field(
             description="those from before the server was started again: they are listed like all others; recorded: some are not, "
-            "but the lesson holds them; lost: whether there were any is not known"
+            "but the lesson holds them; lost: some are not and nobody has them, or whether there were any is not known"
         ),
     ]
 

@@ -118,6 +118,32 @@ def test_the_words_stay_between_two_attempts(tablet: Page, room: Room) -> None:
     assert tablet.evaluate("window.changes") == 0
 
 
+READ_OUT = """
+window.readOut = 0;
+const live = change => (change.target.nodeType === Node.TEXT_NODE ? change.target.parentElement : change.target).closest('[aria-live]');
+new MutationObserver(list => window.readOut += list.filter(change => live(change) === null).length).observe(
+    document.querySelector('.feedback [role=status]'), {subtree: true, childList: true, characterData: true, attributes: true});
+"""
+"""How much has changed that a screen reader reads out; of a region that is atomic it reads all."""
+
+
+def test_neither_a_correction_nor_another_attempt_has_the_one_that_is_looked_at_read_out_again(tablet: Page, room: Room) -> None:
+    shown = open_live(tablet, room)
+    first = see(shown, room, tried(SHOT, FAULT))
+    tablet.locator(f"li [data-attempt='{first}']").click()
+    tablet.evaluate(READ_OUT)
+    tablet.locator(".feedback .who").click()
+    tablet.get_by_role("dialog").locator("[data-code='6']").click()
+    expect(tablet.locator(".feedback .who")).to_have_attribute("data-pupil", "6")
+    expect(tablet.locator(".feedback .who")).to_have_attribute("aria-busy", "false")
+    room.attempt(tried(SHOT))
+    expect(tablet.locator(".feedback .what")).to_contain_text("Attempt 1")
+    assert tablet.evaluate("window.readOut") == 0
+    tablet.get_by_role("button", name="Back to live").click()
+    expect(tablet.locator("[data-cue]")).to_have_count(0)
+    assert tablet.evaluate("window.readOut") > 0
+
+
 def test_the_list_grows_and_each_attempt_can_be_seen_again(tablet: Page, room: Room) -> None:
     shown = open_live(tablet, room)
     first = see(shown, room, tried(SHOT, FAULT))
@@ -262,6 +288,7 @@ def test_attempts_that_nobody_can_list_any_more_are_not_said_to_be_none(tablet: 
     expect(tablet.locator(".feedback")).to_contain_text(f"Earlier attempts {words}")
     room.attempt(tried(SHOT))
     expect(tablet.locator("li [data-attempt]")).to_contain_text(f"See attempt {1 if recorded_s is None else 2} again")
+    expect(tablet.locator("li[data-earlier]")).to_have_text(f"Earlier attempts {words}")
 
 
 def test_an_evaluation_that_is_gone_is_said(tablet: Page, room: Room) -> None:

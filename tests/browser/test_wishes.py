@@ -38,11 +38,11 @@ def test_a_choice_that_the_box_takes_late_is_a_wish_and_said_until_then(tablet: 
     expect(pupil).to_have_attribute("data-pupil", "7")
     tablet.evaluate(TOO_LATE)
     for control in (activity, pupil):
-        expect(control).to_have_attribute("data-wish", "refused")
+        expect(control).to_have_attribute("data-wish", "overdue")
     expect(activity).to_have_attribute("data-activity", "any")
     expect(pupil).to_have_attribute("data-pupil", "")
     for what in ("Squat", "Pupil 7"):
-        expect(tablet.get_by_text(f"{what}: the box did not take it")).to_be_visible()
+        expect(tablet.get_by_text(f"{what}: the box has not taken it yet")).to_be_visible()
     tablet.evaluate(AXE.read_text(encoding="utf-8"))
     found = tablet.evaluate("axe.run({runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'best-practice']})")
     assert [(violation["id"], [node["html"] for node in violation["nodes"]]) for violation in found["violations"]] == []
@@ -51,7 +51,7 @@ def test_a_choice_that_the_box_takes_late_is_a_wish_and_said_until_then(tablet: 
     expect(pupil).to_have_attribute("data-pupil", "7")
     for control in (activity, pupil):
         expect(control).to_have_attribute("data-wish", "settled")
-    expect(tablet.get_by_text("the box did not take it")).to_have_count(0)
+    expect(tablet.get_by_text("the box has not taken it yet")).to_have_count(0)
 
 
 def test_what_is_asked_while_the_connection_goes_is_not_shown_as_done(tablet: Page, room: Room) -> None:
@@ -65,9 +65,22 @@ def test_what_is_asked_while_the_connection_goes_is_not_shown_as_done(tablet: Pa
     expect(tablet.locator(".feedback .who")).to_have_attribute("data-pupil", "6")
     expect(tablet.locator(".feedback .who")).to_have_class(re.compile("pending"))
     tablet.evaluate(TOO_LATE)
-    expect(tablet.get_by_text("Attempt 1, Pupil 6: the box did not take it")).to_be_visible()
+    expect(tablet.get_by_text("Attempt 1, Pupil 6: the box has not taken it yet")).to_be_visible()
     expect(tablet.locator(".feedback .who")).to_have_attribute("data-pupil", "")
     tablet.evaluate("window.startClock()")
     room.start_server()
     shown.wait_for_phase("live")
     assert room.corrections() == []
+
+
+def test_a_list_that_does_not_begin_anew_is_not_silent_about_it(tablet: Page, room: Room) -> None:
+    open_live(tablet, room)
+    room.attempt(tried(SHOT))
+    tablet.locator(".anew").click()
+    tablet.evaluate("WebSocket.prototype.send = () => {}")  # The connection is lost, and nobody has noticed yet.
+    tablet.evaluate(STOP_CLOCK)
+    tablet.get_by_role("dialog").get_by_role("button", name="Begin anew").click()
+    expect(tablet.locator(".anew")).to_have_attribute("aria-busy", "true")
+    tablet.evaluate(TOO_LATE)
+    expect(tablet.get_by_text("Begin anew: the box has not taken it yet")).to_be_visible()
+    expect(tablet.locator("li [data-attempt]")).to_have_count(1)

@@ -177,6 +177,16 @@ def test_an_evaluation_that_was_started_again_goes_on_with_the_numbers_also_for_
     box.start_server()
     box.speak()
     assert box.shown == [(IDS[5], 6)]
+    assert box.earlier == "lost", "five are missing"
+
+
+def test_a_list_that_is_full_is_not_said_to_miss_those_that_left_it() -> None:
+    box = Box()
+    box.list.begin(T0)
+    for attempt in ATTEMPTS:
+        box.end(attempt)
+    assert box.shown[0] == (IDS[20], 21)
+    assert box.earlier == "listed"
 
 
 def test_attempts_of_which_only_the_count_is_known_are_lost_and_the_count_goes_on() -> None:
@@ -191,7 +201,7 @@ def test_attempts_of_which_only_the_count_is_known_are_lost_and_the_count_goes_o
     box.speak()
     assert (box.shown, box.earlier) == ([], "lost")
     box.end(ATTEMPTS[5])
-    assert box.shown == [(IDS[5], 6)]
+    assert (box.shown, box.earlier) == ([(IDS[5], 6)], "lost")
 
 
 def test_where_nobody_remembers_that_is_said_and_no_longer_once_the_list_begins() -> None:

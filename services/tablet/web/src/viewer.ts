@@ -108,6 +108,7 @@ export class Viewer {
 
   /** The list of attempts begins anew, on all tablets. */
   beginAnew(): void {
+    this.lesson.beginAnew(performance.now());
     this.link.beginAnew();
   }
 

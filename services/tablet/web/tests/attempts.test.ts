@@ -127,7 +127,7 @@ describe('what was asked of the box', () => {
     expect(lesson.activity.shown('run')).toBe('run');
   });
 
-  it('is refused when its time is over, whatever it was, also if the box says nothing at all', () => {
+  it('is overdue when its time is over, whatever it was, also if the box says nothing at all', () => {
     const lesson = new Lesson();
     lesson.take(listed(1), null);
     lesson.activity.ask(null, 0);
@@ -137,9 +137,25 @@ describe('what was asked of the box', () => {
     lesson.elapse(1000);
     expect(states()).toEqual(['pending', 'pending', 'pending']);
     lesson.elapse(60_000);
-    expect(states()).toEqual(['refused', 'refused', 'refused']);
+    expect(states()).toEqual(['overdue', 'overdue', 'overdue']);
     expect(lesson.activity.shown('run')).toBe('run');
     expect([lesson.corrected?.number, lesson.owner.value]).toEqual([1, '8']);
+  });
+
+  it('is an empty list until nothing of what stood on it is told any more, and said if it is told for long', () => {
+    const lesson = new Lesson();
+    lesson.take(listed(1, 2), null);
+    lesson.beginAnew(0);
+    lesson.take(listed(1, 2, 3), null); // was under way
+    expect(lesson.anew.state).toBe('pending');
+    lesson.take(listed(4), null);
+    expect(lesson.anew.state).toBe('settled');
+    lesson.beginAnew(10_000);
+    lesson.take(listed(4), null); // a recording has begun meanwhile, or the connection is away
+    lesson.elapse(60_000);
+    expect(lesson.anew.state).toBe('overdue');
+    lesson.take(listed(), null);
+    expect(lesson.anew.state).toBe('settled');
   });
 
   it('is a correction that is done when the attempt is told of again, and no other', () => {

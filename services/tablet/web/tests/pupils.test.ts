@@ -33,20 +33,20 @@ describe('a wish', () => {
     expect(wish.state).toBe('settled');
   });
 
-  it('that the box does not do is taken back, and that is said for a while', () => {
+  it('that the box does not do in time is taken back, and that is said for a while', () => {
     const wish = wished(null);
     wish.elapse(PATIENCE_MS);
     expect([wish.state, wish.shown('7')]).toEqual(['pending', null]);
     wish.elapse(PATIENCE_MS + 1);
     wish.confirm('7');
-    expect([wish.state, wish.shown('7'), wish.value]).toEqual(['refused', '7', null]);
+    expect([wish.state, wish.shown('7'), wish.value]).toEqual(['overdue', '7', null]);
     wish.elapse(PATIENCE_MS + TOLD_MS);
-    expect(wish.state).toBe('refused');
+    expect(wish.state).toBe('overdue');
     wish.elapse(PATIENCE_MS + TOLD_MS + 2);
     expect(wish.state).toBe('settled');
   });
 
-  it('that the box does late is none that it did not do', () => {
+  it('that the box does late is done', () => {
     const wish = wished('8');
     wish.elapse(PATIENCE_MS + 1);
     wish.confirm('8');
@@ -55,7 +55,7 @@ describe('a wish', () => {
 
   it.each([
     ['8', 'settled'],
-    ['7', 'refused'],
+    ['7', 'overdue'],
   ])('that the connection was lost over is %s after it: %s', (ofBox, state) => {
     const wish = wished('8');
     wish.reconnect();
@@ -64,7 +64,7 @@ describe('a wish', () => {
     expect([wish.state, wish.shown(ofBox)]).toEqual([state, ofBox]);
   });
 
-  it('can be wished again after it was refused', () => {
+  it('can be wished again after it was overdue', () => {
     const wish = wished('8');
     wish.elapse(60_000);
     wish.ask('8', 60_000);

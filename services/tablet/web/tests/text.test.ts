@@ -39,7 +39,7 @@ describe.each(Object.entries({ de, es, zh }))('the page in %s', (_code, words) =
     expect(words.attempts.show(3, 'X', null, null)).not.toContain('null');
     for (const say of [words.pupil.is, words.pupil.nextIs, words.pupil.change]) expect(say('B12')).toContain('B12');
     expect(words.pupil.correct(4)).toContain('4');
-    expect(words.refused('B12')).toContain('B12');
+    expect(words.overdue('B12')).toContain('B12');
     expect(words.replay.keyframes).toHaveLength(4);
   });
 });

@@ -601,7 +601,7 @@ export interface components {
             attempts: components["schemas"]["Attempt"][];
             /**
              * Earlier
-             * @description those from before the server was started again: they are listed like all others; recorded: some are not, but the lesson holds them; lost: whether there were any is not known
+             * @description those from before the server was started again: they are listed like all others; recorded: some are not, but the lesson holds them; lost: some are not and nobody has them, or whether there were any is not known
              * @enum {string}
              */
             earlier: "listed" | "recorded" | "lost";

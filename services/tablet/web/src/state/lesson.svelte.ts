@@ -33,6 +33,10 @@ export class Lesson {
   /** Whose `corrected` was after all; null is nobody who is named. */
   readonly owner = new Wish();
   corrected = $state.raw<Attempt | null>(null);
+  /** That nothing of what stood on the list stands there any more: always null. */
+  readonly anew = new Wish();
+  /** The newest attempt as that was asked for. */
+  private stoodId: number | null = null;
 
   /**
    * The box told of all attempts on its list. They are shown at once, in the place of those before.
@@ -48,6 +52,7 @@ export class Lesson {
     if (this.attempts.every(({ id }) => id !== this.chosenId)) this.chosenId = null;
     const corrected = this.attempts.find(({ id }) => id === this.corrected?.id);
     if (corrected !== undefined) this.owner.confirm(corrected.pupil);
+    if (this.attempts.every(({ id }) => id !== this.stoodId)) this.anew.confirm(null);
     const newest = this.attempts[0];
     if (newest === undefined || known.has(newest.id) || boxMs === null) return null;
     return boxMs - newest.ended_ms < NEWS_MS / Math.min(speed, 1) ? newest : null;
@@ -65,14 +70,20 @@ export class Lesson {
     this.owner.ask(pupil, nowMs);
   }
 
+  /** The list is to begin anew. */
+  beginAnew(nowMs: number): void {
+    this.stoodId = this.attempts[0]?.id ?? null;
+    this.anew.ask(null, nowMs);
+  }
+
   /** Time went by. */
   elapse(nowMs: number): void {
-    for (const wish of [this.activity, this.pupil, this.owner]) wish.elapse(nowMs);
+    for (const wish of this.wishes) wish.elapse(nowMs);
   }
 
   /** Another connection. What is known of attempts stays until the box has told anew. */
   reconnect(): void {
-    for (const wish of [this.activity, this.pupil, this.owner]) wish.reconnect();
+    for (const wish of this.wishes) wish.reconnect();
   }
 
   /** Another run of the box: its attempts are others. */
@@ -81,5 +92,9 @@ export class Lesson {
     this.earlier = null;
     this.chosenId = null;
     this.corrected = null;
+  }
+
+  private get wishes(): Wish[] {
+    return [this.activity, this.pupil, this.owner, this.anew];
   }
 }

@@ -1,14 +1,15 @@
 /** So long the box has for what was asked of it. */
 export const PATIENCE_MS = 4000;
-/** So long it is said that the box did not do it. */
+/** So long it is said that the box has not done it yet. */
 export const TOLD_MS = 20_000;
 
 /**
- * Something that was asked of the box: shown at once, as the wish that it is. If the box does not do it, that is said, and what the
- * box says is shown again. Null is a value, too.
+ * Something that was asked of the box: shown at once, as the wish that it is. If the box does not do it in time, that is said, and
+ * what the box says is shown again. It may still be done: the box keeps what it has heard for a part of it that is started again.
+ * Null is a value, too.
  */
 export class Wish {
-  state = $state<'settled' | 'pending' | 'refused'>('settled');
+  state = $state<'settled' | 'pending' | 'overdue'>('settled');
   /** What was asked for last. */
   value = $state.raw<string | null>(null);
   private untilMs = Infinity;
@@ -35,7 +36,7 @@ export class Wish {
   /** Time went by, whether the box has said anything or not. */
   elapse(nowMs: number): void {
     if (this.state === 'settled' || nowMs <= this.untilMs) return;
-    this.state = this.state === 'pending' ? 'refused' : 'settled';
+    this.state = this.state === 'pending' ? 'overdue' : 'settled';
     this.untilMs = nowMs + TOLD_MS;
   }
 

@@ -49,7 +49,7 @@ export const de: Words = {
   product: 'KineBox',
   language: 'Sprache',
   close: 'Schließen',
-  refused: (what) => `${what}: Die Box hat es nicht übernommen`,
+  overdue: (what) => `${what}: Die Box hat es noch nicht übernommen`,
   side: 'Rückmeldung und Zustand des Raums',
   phases,
   gettingReady: { title: 'Die Kameras machen sich bereit', words: 'Einen Moment.' },

@@ -106,8 +106,8 @@ export const en = {
   product: 'KineBox',
   language: 'Language',
   close: 'Close',
-  /** Something was asked of the box: an activity, a pupil, a correction. */
-  refused: (what: string): string => `${what}: the box did not take it`,
+  /** Something was asked of the box: an activity, a pupil, a correction. It may still be done. */
+  overdue: (what: string): string => `${what}: the box has not taken it yet`,
   side: 'Feedback and state of the room',
   phases,
   gettingReady: { title: 'Cameras are getting ready', words: 'One moment.' },

@@ -50,7 +50,7 @@ export const es: Words = {
   product: 'KineBox',
   language: 'Idioma',
   close: 'Cerrar',
-  refused: (what) => `${what}: la caja no lo ha aceptado`,
+  overdue: (what) => `${what}: la caja aún no lo ha aceptado`,
   side: 'Comentarios y estado de la sala',
   phases,
   gettingReady: { title: 'Las cámaras se están preparando', words: 'Un momento.' },

@@ -26,7 +26,7 @@ export const zh: Words = {
   product: 'KineBox',
   language: '语言',
   close: '关闭',
-  refused: (what) => `${what}：主机没有接受`,
+  overdue: (what) => `${what}：主机还没有接受`,
   side: '反馈与现场状态',
   phases,
   gettingReady: { title: '摄像机正在准备', words: '请稍候。' },
