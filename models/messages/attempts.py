@@ -1,6 +1,6 @@
 """The list of attempts that every page shows: since when it counts, and what the evaluation remembers of it.
 
-The list begins anew when a recording begins, and when a teacher says so where nobody records. The page's server keeps it; the
+The list begins anew when a recording begins, when a teacher says so where nobody records, and with each round of a replay. The page's server keeps it; the
 evaluation remembers the newest attempts and how many there were, and tells them again to a server that was started again. Of two
 beginnings the later one counts, whoever tells of it and however often.
 """
@@ -13,11 +13,11 @@ from models.messages.feedback import Feedback
 from models.messages.pupil import Count
 
 REMEMBERED: Final = 50
-"""Attempts that are listed and remembered: two lessons of one pupil. As messages they are some 3 MB, and never more than 25."""
+"""Attempts that are listed and remembered: two lessons of one pupil. As messages they are some 3 MB, and never more than 27."""
 
 
 class AttemptsBegin(msgspec.Struct, frozen=True):
-    """Since when attempts are listed and counted (tablet -> evaluation).
+    """Since when attempts are listed and counted (tablet, replay -> evaluation).
 
     Attributes:
         t_ns: CLOCK_MONOTONIC; what was published before it is not of the list.

@@ -39,12 +39,12 @@ def feedback() -> str:
 
 
 def activity_request() -> str:
-    """tablet -> evaluation"""
+    """tablet, replay -> evaluation"""
     return f"{ROOM}/evaluation/activity"
 
 
 def pupil_turn() -> str:
-    """tablet -> evaluation"""
+    """tablet, replay -> evaluation"""
     return f"{ROOM}/evaluation/pupil"
 
 
@@ -54,7 +54,7 @@ def pupil_corrections() -> str:
 
 
 def attempts_begin() -> str:
-    """tablet -> evaluation"""
+    """tablet, replay -> evaluation"""
     return f"{ROOM}/evaluation/begin"
 
 

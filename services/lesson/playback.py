@@ -16,6 +16,7 @@ import msgspec
 
 from models.errors import UserError
 from models.messages import codec, topics
+from models.messages.attempts import AttemptsBegin
 from models.messages.feedback import ActivityRequest
 from models.messages.health import Health, ReplayHealth
 from models.messages.motion import Motion
@@ -124,6 +125,8 @@ class Player:
         self._said.clear()
         self._asked = None
         self._call(PupilTurn(NOBODY, self._clock_ns()))  # Whoever was up at the end is not up at the beginning.
+        # The same attempts come again, and have the same numbers: those of `kinebox report --again`.
+        self._bus.publish(topics.attempts_begin(), codec.encode(AttemptsBegin(self._clock_ns())))
         turns = deque(self._turns)
         pace = Pace(self._playback.speed, self._begin_ns, self._clock_ns())
         for item in items:

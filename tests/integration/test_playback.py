@@ -11,6 +11,7 @@ import pytest
 from models.config.site import SITE_VERSION, CameraConfig, Site
 from models.errors import UserError
 from models.messages import codec, topics
+from models.messages.attempts import AttemptsBegin
 from models.messages.feedback import ActivityRequest
 from models.messages.health import Health
 from models.messages.motion import Motion
@@ -64,7 +65,9 @@ class Played:
         self._healths: Subscription = self._bus.subscribe(topics.ALL_HEALTH, keep=10_000)
         self._wishes: Subscription = self._bus.subscribe(topics.activity_request(), keep=10_000)
         self._turns: Subscription = self._bus.subscribe(topics.pupil_turn(), keep=10_000)
+        self._begins: Subscription = self._bus.subscribe(topics.attempts_begin(), keep=10_000)
         self.asked: list[str] = []
+        self.begun: list[AttemptsBegin] = []
         self.called: list[PupilTurn] = []
         self.live: list[Motion] = []
         self.smooth: list[Motion] = []
@@ -78,6 +81,8 @@ class Played:
             self.asked.append(codec.decode(delivery.payload, ActivityRequest).activity)
         while (delivery := self._turns.receive(0.0)) is not None:
             self.called.append(codec.decode(delivery.payload, PupilTurn))
+        while (delivery := self._begins.receive(0.0)) is not None:
+            self.begun.append(codec.decode(delivery.payload, AttemptsBegin))
         while (delivery := self._healths.receive(0.0)) is not None:
             self.healths.append(codec.decode(delivery.payload, Health))
         return self
@@ -223,6 +228,16 @@ def test_a_loop_begins_again_with_the_same_figure(lesson: Path) -> None:
     first, second = [motion for motion in played.smooth if motion.sequence == 5][:2]
     assert second.t_ns > first.t_ns
     assert difference(moved(first, second.t_ns - first.t_ns, 0), second) == ""
+
+
+@pytest.mark.slow
+def test_in_each_round_attempts_are_numbered_from_one_as_in_the_report(lesson: Path) -> None:
+    with playing(lesson, loop=True) as (played, _):
+        until(lambda: sum(motion.sequence == 5 for motion in played.collect().smooth) >= 2, "the lesson's second time")
+    first, second = [motion for motion in played.smooth if motion.sequence == 5][:2]
+    begin, again = played.begun[:2]
+    assert begin.t_ns < first.t_published_ns < again.t_ns < second.t_published_ns
+    assert (begin.count, again.count) == (0, 0)
 
 
 @pytest.mark.slow
