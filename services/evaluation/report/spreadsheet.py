@@ -45,4 +45,6 @@ def _is_like_a_number(text: str) -> bool:
     if _EXPONENT.fullmatch(text) or _NOON.fullmatch(text):
         return True
     numbers, words = re.findall(r"\d+", text), re.findall(r"[^\W\d_]+", text.casefold())
-    return len(numbers) > 0 and (len(numbers) <= _DATE or ":" in text) and _IN_DATES.issuperset(words)
+    # Alone, the Spanish "of" makes no date: DE-12 is a pupil.
+    of_a_date = _IN_DATES.issuperset(words) and set(words) != {"de"}
+    return len(numbers) > 0 and (len(numbers) <= _DATE or ":" in text) and of_a_date
