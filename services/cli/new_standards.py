@@ -1,6 +1,7 @@
 """Makes new standards: of an attempt of a lesson (`kinebox standard record`), or of a file from elsewhere (`import`)."""
 
 import datetime as dt
+import shlex
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -115,7 +116,8 @@ def record(file: Path, data: Path, site: Path | None, order: Record) -> None:
     when = told(header, each)
     origin = f"attempt {number} of the lesson of {header.begun:%Y-%m-%d %H:%M} ({when})"
     whose = f", pupil {each.pupil}" if each.pupil else ""
-    _keep(own, _Performance(track, attempt, origin, name, f"{name} ({when}{whose})", "choose another attempt"))
+    performance = _Performance(track, attempt, origin, name, f"{name} ({when}{whose})", "choose another attempt")
+    _keep(own, performance, _options(own, data, site))
     if attempt is each.found:
         _say_what_was_corrected(attempts, number)
 
@@ -129,9 +131,9 @@ def bring_in(file: Path, data: Path, site: Path | None, order: Import) -> None:
             written; all is as it was then.
     """
     own = own_standards(data, site)
-    counting, name = own.counts(order.action), readable(str(file))
+    counting, name, options = own.counts(order.action), readable(str(file)), _options(own, data, site)
     if file.suffix.lower() == STANDARD_SUFFIX:
-        _count(own, _of_another_school(file, order), name)
+        _count(own, _of_another_school(file, order), name, options)
         return
     track = read_motion(file, order.unit)
     if track.frame_s * LEAST_RATE_HZ > 1:
@@ -145,7 +147,7 @@ def bring_in(file: Path, data: Path, site: Path | None, order: Import) -> None:
         attempt = FoundAttempt(order.action, leading_side(track, moments_s, counting), moments_s)
     kind = file.suffix[1:].upper()
     origin = f"imported from a {kind} file on {dt.datetime.now().astimezone():%Y-%m-%d}"
-    _keep(own, _Performance(track, attempt, origin, name, name, "correct the file, or take another performance"))
+    _keep(own, _Performance(track, attempt, origin, name, name, "correct the file, or take another performance"), options)
 
 
 def _of_another_school(file: Path, order: Import) -> Standard:
@@ -159,7 +161,16 @@ def _of_another_school(file: Path, order: Import) -> Standard:
     return standard
 
 
-def _keep(own: OwnStandards, shown: _Performance) -> None:
+def _options(own: OwnStandards, data: Path, site: Path | None) -> str:
+    """By which another command finds the same standards."""
+    options = f"--data {shlex.quote(str(data))}"
+    if site is not None:
+        return f"{options} --site {shlex.quote(str(site))}"
+    # What a lesson's own site file names, no other command knows of.
+    return options if own.folder == own_standards(data, None).folder else f"{options} --site FILE"
+
+
+def _keep(own: OwnStandards, shown: _Performance, options: str) -> None:
     """Make the standard, keep it, and say so."""
     attempt = shown.attempt
     base = own.shipped(attempt.action) or own.counts(attempt.action)
@@ -167,19 +178,20 @@ def _keep(own: OwnStandards, shown: _Performance) -> None:
         made = standard_of(shown.track, attempt, base, shown.origin)
     except PerformanceError as error:
         raise UserError(f"{shown.name} {error}; {shown.remedy}") from error
-    _count(own, made, shown.told, "; its left side led, so the standard is its mirror image" if attempt.handed == "left" else "")
+    mirrored = "; its left side led, so the standard is its mirror image" if attempt.handed == "left" else ""
+    _count(own, made, shown.told, options, mirrored)
 
 
-def _count(own: OwnStandards, made: Standard, source: str, mirrored: str = "") -> None:
+def _count(own: OwnStandards, made: Standard, source: str, options: str, mirrored: str = "") -> None:
     """Let a standard count from now on, and say so."""
     counting = own.counts(made.action)
-    before = SHIPPED if own.own(made.action) is None else counting.version
-    kept = own.put(made)
+    placed = own.put(made)
+    kept, before = placed.standard, SHIPPED if placed.before is None else placed.before
     seconds = kept.moments_s[-1] - kept.moments_s[0]
     lines = (
         f"{kept.action}: version {kept.version} counts now, made of {source}: {seconds:.1f} s, by {kept.stature_m:.2f} m{mirrored}",
         f"{own.file(kept.action)}: {AT_NEXT_START}",
-        f"'kinebox standard restore {kept.action} {before}' brings back what counted before ({counting.origin})",
+        f"bring back what counted before ({counting.origin}): kinebox standard restore {kept.action} {before} {options}",
     )
     for line in lines:
         typer.echo(printable(line))

@@ -50,6 +50,32 @@ class Kept:
         return decode(_read(self.file), str(self.file))
 
 
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """A standard that counts from now on.
+
+    Attributes:
+        standard: with the version that it got.
+        before: the version under which the own one that counted before is kept; None if there was none, or it cannot be read.
+    """
+
+    standard: Standard
+    before: int | None
+
+
+@dataclass(frozen=True)
+class _Copy:
+    """What counted, in the versions.
+
+    Attributes:
+        number: its version there; None if it cannot be read, or nothing counted.
+        made: the file that had to be written for it; None if it was there already.
+    """
+
+    number: int | None = None
+    made: Path | None = None
+
+
 class OwnStandards:
     """The standards in a school's own folder, which need not be there before something is put into it."""
 
@@ -108,11 +134,8 @@ class OwnStandards:
             if file.suffix == STANDARD_SUFFIX and (name := _NAME.fullmatch(file.stem)) is not None:
                 yield file, name
 
-    def put(self, standard: Standard) -> Standard:
+    def put(self, standard: Standard) -> Placed:
         """Make a standard the one that counts for its action; the one before is kept.
-
-        Returns:
-            It with the version that it got.
 
         Raises:
             UserError: it cannot be written; all is as it was.
@@ -139,14 +162,14 @@ class OwnStandards:
                 self.file(action).unlink(missing_ok=True)
             sync_folder(self.folder)
 
-    def _put(self, standard: Standard) -> Standard:
-        with self._kept_before(standard.action):
+    def _put(self, standard: Standard) -> Placed:
+        with self._kept_before(standard.action) as before:
             numbered = replace(standard, version=self._next(standard.action))
             data = encode(numbered)
             decode(data, self.file(standard.action).name)
             write_over(self.file(standard.action), data)
         sync_folder(self.folder)
-        return numbered
+        return Placed(numbered, before)
 
     def _next(self, action: str) -> int:
         numbers = [one.number for one in self.kept(action)]
@@ -157,22 +180,22 @@ class OwnStandards:
         return max(numbers, default=0) + 1
 
     @contextmanager
-    def _kept_before(self, action: str) -> Iterator[None]:
-        """Keep what counts; if what is done then does not succeed, all is as it was."""
+    def _kept_before(self, action: str) -> Iterator[int | None]:
+        """Keep what counts, as the version that is given; if what is done then does not succeed, all is as it was."""
         copy = self._keep(action)
         try:
-            yield
+            yield copy.number
         except (OSError, UserError):
-            if copy is not None:
-                self._forget(copy)
+            if copy.made is not None:
+                self._forget(copy.made)
             raise
 
-    def _keep(self, action: str) -> Path | None:
-        """Copy what counts to the versions, and return the copy; None if it is there already, or nothing counts."""
+    def _keep(self, action: str) -> _Copy:
+        """Copy what counts to the versions, unless it is there already."""
         file = self.file(action)
         if not file.exists():
-            return None
-        data, copy = file.read_bytes(), None
+            return _Copy()
+        data, number = file.read_bytes(), None
         try:
             standard = _standard(data, file)
         except UserError:
@@ -183,8 +206,9 @@ class OwnStandards:
                 # A file that somebody brought has the number of another one.
                 standard = replace(standard, version=self._next(action))
                 copy, data = self._version(action, standard.version), encode(standard)
+            number = standard.version
         if copy is None or copy.exists():
-            return None
+            return _Copy(number)
         try:
             self._versions.mkdir(exist_ok=True)
             write_new(copy, data)
@@ -193,7 +217,7 @@ class OwnStandards:
         except OSError:
             self._forget(copy)
             raise
-        return copy
+        return _Copy(number, copy)
 
     def _forget(self, copy: Path) -> None:
         copy.unlink(missing_ok=True)

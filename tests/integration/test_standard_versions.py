@@ -11,16 +11,16 @@ import pytest
 from models.errors import UserError
 from models.teaching.standard import encode
 from services.cli import standards
-from services.cli.new_standards import Record, record
+from services.cli.new_standards import Import, Record, bring_in, record
 from services.cli.standards import restore
 from services.support.own_standards import OwnStandards
-from tests.integration.school import counting, holds, lesson_of, record_refused
+from tests.integration.school import SITE, counting, holds, lesson_of, record_refused
 from tests.taught import shipped
 
 
 def put(data: Path, *origins: str) -> OwnStandards:
     """Squats that count one after the other, known by their origins."""
-    data.mkdir(exist_ok=True)
+    data.mkdir(parents=True, exist_ok=True)
     own = OwnStandards(data / "school")
     for origin in origins:
         own.put(replace(shipped().standards["squat"], origin=origin))
@@ -88,6 +88,32 @@ def test_what_was_kept_can_count_again_though_a_copied_file_has_its_number(
     assert len({row["version"] for row in rows[:2]}) == 2, "the copied one got a number of its own"
     restore("squat", str(rows[1]["version"]), tmp_path, None)
     assert counting(tmp_path, "squat").origin == "of another school"
+
+
+def test_a_new_one_in_the_place_of_a_copied_file_says_by_which_number_and_options_that_one_comes_back(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = tmp_path / "two words"
+    own = with_a_copied_one(data)
+    new = put(tmp_path / "new", "new").file("squat")
+    bring_in(new, data, None, Import("squat"))
+    told = capsys.readouterr().out.splitlines()[2]
+    assert told == f"bring back what counted before (of another school): kinebox standard restore squat 3 --data '{data}'"
+    restore("squat", "3", data, None)
+    assert own.counts("squat").origin == "of another school"
+
+
+def test_what_is_said_to_bring_a_standard_back_names_the_site_file_by_which_it_was_kept(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    site = tmp_path / "site.toml"
+    shutil.copy(SITE.parent / "rig.toml", tmp_path)
+    (tmp_path / "elsewhere").mkdir()
+    site.write_text(SITE.read_text() + '\n[evaluation]\nteaching = "elsewhere"\n')
+    new = put(tmp_path / "new", "new").file("squat")
+    bring_in(new, tmp_path, site, Import("squat"))
+    told = capsys.readouterr().out.splitlines()[2]
+    assert told.endswith(f": kinebox standard restore squat shipped --data {tmp_path} --site {site}")
 
 
 def test_the_one_before_a_copied_file_is_the_newest_that_is_kept(tmp_path: Path) -> None:

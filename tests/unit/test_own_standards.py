@@ -30,7 +30,7 @@ def origins(own: OwnStandards) -> set[str]:
 
 def test_each_new_one_counts_with_a_number_of_its_own_and_those_before_are_kept(tmp_path: Path) -> None:
     own = OwnStandards(tmp_path / "school")
-    assert [own.put(named(origin)).version for origin in ("a", "b", "c")] == [2, 3, 4]
+    assert [own.put(named(origin)).standard.version for origin in ("a", "b", "c")] == [2, 3, 4]
     assert sorted(holds(tmp_path)) == [
         "school/standards/squat.npz",
         "school/standards/versions/squat-2.npz",
@@ -50,12 +50,12 @@ def test_a_version_that_is_brought_back_is_as_it_was_and_numbers_go_on_growing(t
     own.bring_back("squat", 2)
     assert own.file("squat").read_bytes() == before
     assert origins(own) == {"a", "b", "c"}
-    assert own.put(named("d")).version == 5
+    assert own.put(named("d")).standard.version == 5
     own.bring_back_shipped("squat")
     assert own.own("squat") is None
     assert own.counts("squat").version == SQUAT.version
     assert origins(own) == {"a", "b", "c", "d"}
-    assert own.put(named("e")).version == 6
+    assert own.put(named("e")).standard.version == 6
 
 
 def test_a_version_that_is_not_kept_or_of_another_action_is_refused(tmp_path: Path) -> None:
@@ -77,7 +77,9 @@ def test_a_file_that_somebody_brought_is_kept_also_if_its_number_is_taken(tmp_pa
     for origin in ("a", "b"):
         own.put(named(origin))
     own.file("squat").write_bytes(encode(replace(named("of another school"), version=2)))
-    assert own.put(named("c")).version > 3
+    placed = own.put(named("c"))
+    assert placed.standard.version > 3
+    assert [one.read().origin for one in own.kept("squat") if one.number == placed.before] == ["of another school"]
     # Version 3, "b", was overwritten by hand: of what was here all is there.
     assert origins(own) >= {"a", "of another school", "c"}
     numbers = [one.number for one in own.kept("squat")]
@@ -110,7 +112,7 @@ def test_what_cannot_be_read_is_kept_as_it_is_and_another_can_take_its_place(tmp
     for _ in range(2):
         own.bring_back_shipped("squat")
         own.file("squat").write_bytes(data)
-    assert own.put(named("b")).version == 2
+    assert own.put(named("b")).standard.version == 2
     kept = [path for path in (tmp_path / "standards/versions").iterdir() if "unreadable" in path.name]
     assert [path.read_bytes() for path in kept] == [data]
     assert own.counts("squat").origin == "b"
@@ -135,8 +137,8 @@ def test_an_action_of_the_schools_own_has_standards_too(tmp_path: Path) -> None:
     own = OwnStandards(tmp_path)
     with pytest.raises(UserError, match=r"there is no action 'handstand'; there are: badminton_clear, .*volleyball_spike$"):
         own.counts("handstand")
-    assert own.put(replace(SQUAT, action="handstand")).version == 1
-    assert own.put(replace(SQUAT, action="handstand")).version == 2
+    assert own.put(replace(SQUAT, action="handstand")).standard.version == 1
+    assert own.put(replace(SQUAT, action="handstand")).standard.version == 2
     assert own.shipped("handstand") is None
     own.file("handstand").unlink()
     with pytest.raises(UserError, match="no standard of 'handstand' counts; 'kinebox standard restore handstand'"):

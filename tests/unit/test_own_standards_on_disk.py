@@ -188,7 +188,7 @@ def test_another_one_that_hangs_in_the_folder_is_waited_for_a_while_and_then_nam
         assert holds(tmp_path) == before
     finally:
         os.close(other)
-    assert own.put(named("b")).version == 3
+    assert own.put(named("b")).standard.version == 3
 
 
 def test_another_one_that_is_at_work_for_a_moment_is_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -200,6 +200,6 @@ def test_another_one_that_is_at_work_for_a_moment_is_waited_for(tmp_path: Path, 
     timer = threading.Timer(0.1, os.close, [other])
     timer.start()
     try:
-        assert own.put(named("b")).version == 3
+        assert own.put(named("b")).standard.version == 3
     finally:
         timer.join()
