@@ -48,7 +48,7 @@ class Entry(msgspec.Struct, frozen=True, array_like=True):
 
 
 class FusionLog(msgspec.Struct, frozen=True):
-    """A part of a segment (fusion -> recorder), about twice a second.
+    """A part of a segment (fusion -> recorder), about twice a second, and as soon as something was said of an attempt.
 
     Attributes:
         segment_ns: CLOCK_MONOTONIC at which fusion's state began; names the segment, and is positive.

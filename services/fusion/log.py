@@ -1,12 +1,15 @@
 """The log of what fusion takes in and gives out, in its order, for as long as somebody asks for it (`models.messages.lesson`)."""
 
 from collections import deque
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from models.messages.lesson import LEASE_NS, Entry, EntryKind, FusionLog, SegmentRequest
 
 PART_NS = 500_000_000
 """Length of a part. What fusion has not published when it dies is lost."""
+SAID: Final = frozenset[EntryKind](("feedback", "corrections"))
+"""A part with what was said of an attempt is published at the next tick: a lesson may end now, and whoever says that it shall has
+seen this on the page. A few a minute."""
 MAX_PART_BYTES = 1 << 20
 """A part that has reached this is published early, at the next tick; it is larger by what came in since the last one."""
 MAX_KEPT_BYTES = 16 << 20
@@ -43,6 +46,7 @@ class SegmentLog:
         self._sequence = 0
         self._part_ns = 0
         self._bytes = 0
+        self._said = False
         self._entries: list[Entry] = []
         self._kept: deque[_Kept] = deque()
 
@@ -77,10 +81,12 @@ class SegmentLog:
         if self.running:
             self._entries.append(Entry(kind, t_ns, payload))
             self._bytes += len(payload)
+            self._said |= kind in SAID
 
     def part(self, now_ns: int) -> FusionLog | None:
         """The next part, if it is due. Call it often."""
-        if not self.running or (now_ns - self._part_ns < PART_NS and self._bytes < MAX_PART_BYTES):
+        due = now_ns - self._part_ns >= PART_NS or self._bytes >= MAX_PART_BYTES or self._said
+        if not self.running or not due:
             return None
         part = self._collected()
         self._keep(_Kept(part, now_ns, self._bytes))
@@ -110,4 +116,5 @@ class SegmentLog:
     def _begin_part(self, now_ns: int) -> None:
         self._part_ns = now_ns
         self._bytes = 0
+        self._said = False
         self._entries = []

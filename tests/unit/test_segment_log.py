@@ -1,6 +1,8 @@
 """Fusion's log: who gets it, when a segment begins, and when it ends."""
 
-from models.messages.lesson import LEASE_NS, Entry, SegmentRequest
+import pytest
+
+from models.messages.lesson import LEASE_NS, Entry, EntryKind, SegmentRequest
 from services.fusion.log import IN_FLIGHT_NS, MAX_KEPT_BYTES, MAX_PART_BYTES, PART_NS, Answer, SegmentLog
 
 NOW_NS = 10**12
@@ -82,6 +84,20 @@ def test_a_flood_is_published_early_instead_of_kept() -> None:
     log.ask(SegmentRequest(NOW_NS), NOW_NS)
     log.add("observation", NOW_NS, bytes(MAX_PART_BYTES))
     assert log.part(NOW_NS + 1) is not None
+
+
+@pytest.mark.parametrize("kind", ["feedback", "corrections"])
+def test_what_was_said_of_an_attempt_goes_at_once_so_that_a_lesson_that_ends_now_holds_it(kind: EntryKind) -> None:
+    log = SegmentLog()
+    log.ask(SegmentRequest(NOW_NS), NOW_NS)
+    log.add("observation", NOW_NS + 1, b"seen")
+    assert log.part(NOW_NS + 2) is None
+    log.add(kind, NOW_NS + 3, b"said")
+    part = log.part(NOW_NS + 4)
+    assert part is not None
+    assert [entry.kind for entry in part.entries] == ["observation", kind]
+    log.add("tick", NOW_NS + 5)
+    assert log.part(NOW_NS + 6) is None
 
 
 def running_log(parts: int) -> SegmentLog:
