@@ -1,8 +1,8 @@
 """The list of attempts that every page shows: since when it counts, and what the evaluation remembers of it.
 
-The list begins anew when a recording begins, when a teacher says so where nobody records, and with each round of a replay. The page's server keeps it; the
-evaluation remembers the newest attempts and how many there were, and tells them again to a server that was started again. Of two
-beginnings the later one counts, whoever tells of it and however often.
+The list begins anew when a recording begins, when a teacher says so where nobody records, and with each round of a replay. The
+page's server keeps it; the evaluation remembers the newest attempts and how many there were, and tells them again to a server that
+was started again. Of two beginnings the later one counts, whoever tells of it and however often.
 """
 
 from typing import Final

@@ -176,7 +176,11 @@ class Attempt(_Model):
 
     id: Annotated[int, Field(description="its replay is at /api/attempts/{id}/replay as long as the attempt is listed")]
     number: Annotated[
-        int | None, Field(description="counts the attempts of the lesson, as its report does; null: the lesson does not hold it")
+        int | None,
+        Field(
+            description="counts the attempts of the lesson, as its report does, and goes on after the recording; null: the lesson "
+            "does not hold it"
+        ),
     ]
     action: str
     by: Annotated[Literal["recognised", "chosen"], Field(description="how it is known what was tried")]

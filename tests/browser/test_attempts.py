@@ -120,8 +120,8 @@ def test_the_words_stay_between_two_attempts(tablet: Page, room: Room) -> None:
 
 READ_OUT = """
 window.readOut = 0;
-const live = change => (change.target.nodeType === Node.TEXT_NODE ? change.target.parentElement : change.target).closest('[aria-live]');
-new MutationObserver(list => window.readOut += list.filter(change => live(change) === null).length).observe(
+const isRead = ({target}) => (target.nodeType === Node.TEXT_NODE ? target.parentElement : target).closest('[aria-live]') === null;
+new MutationObserver(list => window.readOut += list.filter(isRead).length).observe(
     document.querySelector('.feedback [role=status]'), {subtree: true, childList: true, characterData: true, attributes: true});
 """
 """How much has changed that a screen reader reads out; of a region that is atomic it reads all."""

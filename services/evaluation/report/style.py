@@ -6,7 +6,8 @@ STYLE: Final = """
 @page { size: A4; margin: 11mm 12mm 12mm }
 * { box-sizing: border-box }
 html { color: #111; background: #fff; font: 9.5pt/1.3 "Segoe UI", "Helvetica Neue", Roboto, Arial, "Noto Sans", "Noto Sans SC",
-  "PingFang SC", "Microsoft YaHei", "WenQuanYi Zen Hei", "DejaVu Sans Condensed", system-ui, sans-serif; -webkit-print-color-adjust: exact; print-color-adjust: exact }
+  "PingFang SC", "Microsoft YaHei", "WenQuanYi Zen Hei", "DejaVu Sans Condensed", system-ui, sans-serif;
+  -webkit-print-color-adjust: exact; print-color-adjust: exact }
 body { width: 186mm; margin: 0 auto }
 svg { display: block; overflow: visible }
 section + section { break-before: page }

@@ -121,7 +121,7 @@ export interface components {
             id: number;
             /**
              * Number
-             * @description counts the attempts of the lesson, as its report does; null: the lesson does not hold it
+             * @description counts the attempts of the lesson, as its report does, and goes on after the recording; null: the lesson does not hold it
              */
             number: number | null;
             /** Action */
