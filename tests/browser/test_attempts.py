@@ -6,14 +6,14 @@ from typing import Any
 
 import msgspec
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from models.messages.feedback import Colour, Feedback
 from models.motions.actions.library import ACTIONS
 from services.evaluation.report.numbers import estimate
 from services.evaluation.report.words import WORDS
 from tests.browser.attempts import tried, unseen
-from tests.browser.conftest import DRAWN
+from tests.browser.conftest import Tablets
 from tests.browser.room import Room, with_scene
 from tests.browser.shown_attempts import FAULT, SHOT, like, see
 from tests.browser.test_page import AXE, Shown, open_live
@@ -157,13 +157,12 @@ def test_the_list_grows_and_each_attempt_can_be_seen_again(tablet: Page, room: R
     expect(tablet.locator("[data-cue]")).to_have_attribute("data-cue", FAULT)
 
 
-def test_a_school_s_language_is_spoken_to_a_tablet_of_another_one(browser: Browser, room: Room) -> None:
-    page = browser.new_page(viewport={"width": 800, "height": 500}, locale="fr-FR")
+def test_a_school_s_language_is_spoken_to_a_tablet_of_another_one(tablets: Tablets, room: Room) -> None:
+    page = tablets(800, 500, locale="fr-FR")
     words = page.request.get(f"{room.page}api/teaching").json()
     page.route("**/api/teaching", lambda route: route.fulfill(json={**words, "languages": ["es", "en", "zh", "de"]}))
     page.goto(room.page)
     expect(page.locator("html")).to_have_attribute("lang", "es", timeout=60_000)
-    page.close()
 
 
 def test_the_choice_of_an_activity_reaches_the_box_and_comes_back(tablet: Page, room: Room, words: Words) -> None:
@@ -228,10 +227,10 @@ def test_a_tablet_that_joins_later_is_told_of_the_attempts_and_starts_no_replay(
 
 
 def test_the_list_begins_anew_by_a_touch_on_all_tablets_and_with_every_recording(
-    browser: Browser, tablet: Page, room: Room
+    tablets: Tablets, tablet: Page, room: Room
 ) -> None:
     open_live(tablet, room)
-    other = browser.new_page(viewport={"width": 800, "height": 580}, device_scale_factor=DRAWN)
+    other = tablets(800, 580)
     other.goto(room.page)
     room.attempt(tried(SHOT, FAULT))
     for page in (tablet, other):
@@ -245,7 +244,6 @@ def test_the_list_begins_anew_by_a_touch_on_all_tablets_and_with_every_recording
     for page in (tablet, other):
         expect(page.locator("li [data-attempt]")).to_have_count(0)
         expect(page.get_by_text("No attempt yet")).to_be_visible()
-    other.close()
     for lesson_s in (1.0, 2.0):
         with_scene(room, recorded_s=lesson_s)
         expect(tablet.locator("[data-recording]")).to_be_visible()
@@ -350,8 +348,8 @@ def test_attempts_are_accessible(tablet: Page, room: Room, what: str) -> None:
 
 
 @pytest.mark.parametrize(("width", "height"), [(390, 844), (844, 390), (1280, 800)])
-def test_attempts_fit_on_other_screens(browser: Browser, room: Room, width: int, height: int) -> None:
-    page = browser.new_page(viewport={"width": width, "height": height}, has_touch=True, is_mobile=width != 1280)
+def test_attempts_fit_on_other_screens(tablets: Tablets, room: Room, width: int, height: int) -> None:
+    page = tablets(width, height, has_touch=True, is_mobile=width != 1280)
     shown = open_live(page, room)
     see(shown, room, tried(SHOT, FAULT))
     assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
@@ -360,4 +358,3 @@ def test_attempts_fit_on_other_screens(browser: Browser, room: Room, width: int,
     assert canvas["height"] > 120
     page.locator("[data-cue]").scroll_into_view_if_needed()
     expect(page.locator("[data-cue]")).to_be_in_viewport()
-    page.close()

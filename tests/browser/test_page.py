@@ -1,18 +1,20 @@
 """The page in Chromium, on the real server: the figure moves, and nothing that is not known looks fine."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import cv2
 import msgspec
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from models.arrays import Float
 from models.messages.motion import JointState
 from models.messages.trouble import Trouble
 from models.skeleton import coco
 from services.tablet import process
+from tests.browser.conftest import Tablets
 from tests.browser.room import CAMERAS, MACHINE, Room, with_scene
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -53,6 +55,14 @@ class Shown:
         picture = self.picture()
         return int((np.ptp(picture, axis=-1) > 0.25).sum())
 
+    def wait_for_coloured_pixels(self, wanted: Callable[[int], bool]) -> None:
+        """Wait for a picture: what is on the screen may for a moment be the one before."""
+        for _ in range(100):
+            if wanted(self.coloured_pixels()):
+                return
+            self.page.wait_for_timeout(100)
+        raise AssertionError(f"{self.coloured_pixels()} coloured pixels")
+
 
 def open_live(page: Page, room: Room) -> Shown:
     shown = Shown(page)
@@ -67,7 +77,7 @@ def test_the_figure_moves_while_the_pupil_does(page: Page, room: Room) -> None:
     before, figures = shown.picture(), shown.number("figures")
     shown.wait_until(f"Number(d.figures) >= {figures + 5}")
     assert (np.abs(shown.picture() - before).max(axis=-1) > 0.2).sum() > 75
-    assert shown.coloured_pixels() > 250
+    shown.wait_for_coloured_pixels(lambda pixels: pixels > 250)
 
 
 def test_nothing_is_drawn_while_nothing_changes(page: Page, room: Room) -> None:
@@ -114,7 +124,7 @@ def test_server_gone_is_grey_with_words_and_server_back_is_live(page: Page, room
     shown.wait_for_phase("offline")
     expect(page.get_by_text("No connection to the box")).to_be_visible()
     assert shown.number("coloured") == 0
-    assert shown.coloured_pixels() < 13
+    shown.wait_for_coloured_pixels(lambda pixels: pixels < 13)
     expect(page.locator("[data-camera]")).to_have_count(0)
     expect(page.get_by_text("Good")).to_have_count(0)
     room.start_server()
@@ -128,7 +138,7 @@ def test_motion_that_stops_becomes_grey_and_says_for_how_long(page: Page, room: 
     shown.wait_for_phase("stale")
     expect(page.get_by_text("No new movement for")).to_be_visible()
     shown.wait_until("Number(d.coloured) === 0")
-    assert shown.coloured_pixels() < 13
+    shown.wait_for_coloured_pixels(lambda pixels: pixels < 13)
     with_scene(room, publishing=True)
     shown.wait_for_phase("live")
 
@@ -172,7 +182,7 @@ def test_guesses_alone_are_never_live(page: Page, room: Room) -> None:
     shown = open_live(page, room)
     with_scene(room, states=dict.fromkeys(range(coco.COUNT), JointState.GUESSED))
     shown.wait_for_phase("stale")
-    assert shown.coloured_pixels() < 13
+    shown.wait_for_coloured_pixels(lambda pixels: pixels < 13)
 
 
 def test_a_joint_that_is_not_sure_is_grey_on_a_coloured_figure(page: Page, room: Room) -> None:
@@ -181,7 +191,7 @@ def test_a_joint_that_is_not_sure_is_grey_on_a_coloured_figure(page: Page, room:
     everything = shown.coloured_pixels()
     with_scene(room, states={coco.INDEX["left_knee"]: JointState.GUESSED, coco.INDEX["right_ankle"]: JointState.UNKNOWN})
     shown.wait_until("Number(d.coloured) < 1")
-    assert 0 < shown.coloured_pixels() < 0.9 * everything
+    shown.wait_for_coloured_pixels(lambda pixels: 0 < pixels < 0.9 * everything)
 
 
 def test_a_lost_camera_is_named_and_the_lesson_goes_on(page: Page, room: Room) -> None:
@@ -223,9 +233,9 @@ def test_recording_is_told_with_its_length_while_it_lasts(page: Page, room: Room
     expect(chip).to_have_count(0)
 
 
-def test_a_phone_shows_figure_and_cameras_without_sideways_scrolling(browser: Browser, room: Room) -> None:
+def test_a_phone_shows_figure_and_cameras_without_sideways_scrolling(tablets: Tablets, room: Room) -> None:
     with_scene(room, recorded_s=3725.0)
-    page = browser.new_page(viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True)
+    page = tablets(390, 844, has_touch=True, is_mobile=True)
     shown = open_live(page, room)
     assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
     canvas = page.locator("canvas").bounding_box()
@@ -234,14 +244,13 @@ def test_a_phone_shows_figure_and_cameras_without_sideways_scrolling(browser: Br
     last = page.locator("[data-camera]").last.bounding_box()
     assert last is not None
     assert last["y"] + last["height"] <= 844, "all cameras are in view without scrolling"
-    assert shown.coloured_pixels() > 500
-    page.close()
+    shown.wait_for_coloured_pixels(lambda pixels: pixels > 500)
 
 
 @pytest.mark.parametrize(("width", "height"), [(390, 844), (844, 390)])
-def test_a_warning_on_a_phone_stands_above_the_figure(browser: Browser, room: Room, width: int, height: int) -> None:
+def test_a_warning_on_a_phone_stands_above_the_figure(tablets: Tablets, room: Room, width: int, height: int) -> None:
     with_scene(room, fresh_hz=5.0)
-    page = browser.new_page(viewport={"width": width, "height": height}, has_touch=True, is_mobile=True)
+    page = tablets(width, height, has_touch=True, is_mobile=True)
     open_live(page, room)
     # On a busy machine the page may have more to say for a moment: `evaluate` waits for the warning, as `bounding_box` does not.
     bottom_px = page.get_by_text("The box is busy").evaluate("warning => warning.getBoundingClientRect().bottom")
@@ -249,7 +258,6 @@ def test_a_warning_on_a_phone_stands_above_the_figure(browser: Browser, room: Ro
     assert 0 < bottom_px <= top_px
     # The canvas follows the window with the next picture, which a busy machine draws late.
     page.wait_for_function("() => document.documentElement.scrollHeight <= window.innerHeight")
-    page.close()
 
 
 @pytest.mark.parametrize("phase", ["live", "lost", "offline", "details"])
@@ -278,16 +286,15 @@ def test_the_page_asks_no_other_host(page: Page, room: Room) -> None:
     assert [url for url in asked if not url.startswith(room.page)] == []
 
 
-def test_reduced_motion_is_respected(browser: Browser, room: Room) -> None:
+def test_reduced_motion_is_respected(tablets: Tablets, room: Room) -> None:
     with_scene(room, speed=0.0)
-    page = browser.new_page(viewport={"width": 640, "height": 400}, reduced_motion="reduce")
+    page = tablets(640, 400, reduced_motion="reduce")
     shown = open_live(page, room)
     first = shown.number("azimuth")
     page.get_by_role("application").focus()
     page.keyboard.press("ArrowLeft")
     page.keyboard.press("r")
     shown.wait_until(f"Math.abs(Number(d.azimuth) - {first}) < 0.2")
-    page.close()
 
 
 def test_a_browser_without_3d_says_so(page: Page, room: Room) -> None:

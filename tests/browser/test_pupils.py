@@ -1,9 +1,10 @@
 """Pupils' codes on the page: who is up, the next one, and whose an attempt was after all."""
 
 import pytest
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.attempts import tried
+from tests.browser.conftest import Tablets
 from tests.browser.room import Room, with_scene
 from tests.browser.shown_attempts import FAULT, SHOT, see
 from tests.browser.test_page import AXE, Shown, open_live
@@ -92,17 +93,16 @@ def test_a_code_can_be_typed_and_a_name_is_refused_with_what_a_code_is(tablet: P
     until_told(tablet, room, "B12")
 
 
-def test_every_tablet_shows_who_is_up_also_after_it_was_loaded_again(browser: Browser, tablet: Page, room: Room) -> None:
+def test_every_tablet_shows_who_is_up_also_after_it_was_loaded_again(tablets: Tablets, tablet: Page, room: Room) -> None:
     open_live(tablet, room)
     call(tablet, "7")
-    other = browser.new_page(viewport={"width": 800, "height": 580})
+    other = tablets(800, 580)
     other.goto(room.page)
     expect(up(other)).to_have_attribute("data-pupil", "7", timeout=60_000)
     other.get_by_role("button", name="Next: pupil 8").click()
     expect(up(tablet)).to_have_attribute("data-pupil", "8")
     tablet.reload()
     expect(up(tablet)).to_have_attribute("data-pupil", "8")
-    other.close()
 
 
 def test_who_is_up_and_what_was_chosen_outlive_the_evaluation_and_the_pages_server(tablet: Page, room: Room) -> None:
@@ -164,11 +164,11 @@ def test_an_attempt_shows_its_pupil_on_the_replay_in_the_list_and_beside_its_sco
 
 
 def test_whose_an_attempt_was_is_corrected_on_every_tablet_and_told_for_the_lesson(
-    browser: Browser, tablet: Page, room: Room
+    tablets: Tablets, tablet: Page, room: Room
 ) -> None:
     with_scene(room, recorded_s=60.0)
     shown = open_live(tablet, room)
-    other = browser.new_page(viewport={"width": 800, "height": 580})
+    other = tablets(800, 580)
     open_live(other, room)
     call(tablet, "7")
     until_told(tablet, room, "7")
@@ -188,7 +188,6 @@ def test_whose_an_attempt_was_is_corrected_on_every_tablet_and_told_for_the_less
     expect(up(tablet)).to_have_attribute("data-pupil", "7")
     (told,) = room.corrections()
     assert [(one.attempt, one.pupil) for one in told.corrections] == [(first, "6")]
-    other.close()
 
 
 def test_a_correction_that_nothing_records_says_so(tablet: Page, room: Room) -> None:
@@ -236,8 +235,8 @@ def test_pupils_are_accessible(tablet: Page, room: Room, what: str) -> None:
 
 
 @pytest.mark.parametrize(("width", "height"), [(390, 844), (844, 390), (1280, 800), (1024, 768)])
-def test_who_is_up_fits_on_other_screens(browser: Browser, room: Room, width: int, height: int) -> None:
-    page = browser.new_page(viewport={"width": width, "height": height}, has_touch=True, is_mobile=width < 900)
+def test_who_is_up_fits_on_other_screens(tablets: Tablets, room: Room, width: int, height: int) -> None:
+    page = tablets(width, height, has_touch=True, is_mobile=width < 900)
     shown = open_live(page, room)
     call(page, "36")
     until_told(page, room, "36")
@@ -250,4 +249,3 @@ def test_who_is_up_fits_on_other_screens(browser: Browser, room: Room, width: in
         assert box["x"] >= 0
         assert box["x"] + box["width"] <= width
     assert Shown(page).number("figures") > 0
-    page.close()

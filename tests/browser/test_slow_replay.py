@@ -5,10 +5,11 @@ import time
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from models.messages.feedback import Colour
 from tests.browser.attempts import tried
+from tests.browser.conftest import Tablets
 from tests.browser.room import Room, with_scene
 from tests.browser.shown_attempts import FAULT, SHOT, levels, like, see
 from tests.browser.test_page import open_live
@@ -194,7 +195,7 @@ def test_a_lost_connection_takes_no_replay_away_and_lets_others_be_seen_that_wer
     expect(tablet.locator("[data-cue]")).to_have_attribute("data-cue", FAULT)
     tablet.get_by_role("button", name="Back to live").click()
     shown.wait_until("d.stage === 'live' && Number(d.coloured) === 0")
-    assert shown.coloured_pixels() < 13
+    shown.wait_for_coloured_pixels(lambda pixels: pixels < 13)
 
 
 def test_a_replay_that_is_gone_is_said(tablet: Page, room: Room) -> None:
@@ -219,8 +220,8 @@ def test_a_replay_that_did_not_arrive_can_be_asked_for_again(tablet: Page, room:
     expect(tablet.get_by_text("did not arrive")).to_have_count(0)
 
 
-def test_on_a_low_screen_the_patterns_are_explained_too(browser: Browser, room: Room) -> None:
-    page = browser.new_page(viewport={"width": 844, "height": 390}, has_touch=True, is_mobile=True)
+def test_on_a_low_screen_the_patterns_are_explained_too(tablets: Tablets, room: Room) -> None:
+    page = tablets(844, 390, has_touch=True, is_mobile=True)
     shown = open_live(page, room)
     see(shown, room, tried(SHOT, FAULT))
     legend = page.locator(".bar .legend")
@@ -229,7 +230,6 @@ def test_on_a_low_screen_the_patterns_are_explained_too(browser: Browser, room: 
     assert box is not None
     assert reset is not None
     assert box["x"] + box["width"] <= reset["x"], "nothing that is touched is under it"
-    page.close()
 
 
 def test_a_replay_goes_by_key(tablet: Page, room: Room) -> None:
@@ -242,12 +242,11 @@ def test_a_replay_goes_by_key(tablet: Page, room: Room) -> None:
     shown.wait_until("d.stage === 'live'")
 
 
-def test_who_wants_less_motion_gets_the_decisive_moment_at_rest(browser: Browser, room: Room) -> None:
-    page = browser.new_page(viewport={"width": 800, "height": 500}, reduced_motion="reduce")
+def test_who_wants_less_motion_gets_the_decisive_moment_at_rest(tablets: Tablets, room: Room) -> None:
+    page = tablets(800, 500, reduced_motion="reduce")
     shown = open_live(page, room)
     made = tried(SHOT, FAULT)
     see(shown, room, made)
     at_s = made.frame_of(made.keyframes_ns[2]) * made.frame_ns * 1e-9
     shown.wait_until(f"Math.abs(Number(d.position) - {at_s}) < 0.02")
     expect(page.get_by_role("button", name="Play", exact=True)).to_be_visible()
-    page.close()
