@@ -41,25 +41,29 @@ help: ## Show this list
 run: setup ## Start KineBox on the built-in lesson (SOURCE=footage or footage2: films of people) and print the address of the page
 	@exec kinebox run --site $(SITE) --data $(DATA)
 
-test: setup $(FILMS) ## All tests but the four suites below: unit, property, golden, real sockets and processes, the page in Chromium
-	@# The checkers leave cores idle. An open page or a running box takes one for as long as it is there: one at a time, beside all others.
-	@$(MAKE) --no-print-directory --jobs=3 lint tests-of-the-page tests-of-the-whole tests-of-parts
+test: ## All tests but the four suites below: unit, property, golden, real sockets and processes, the page in Chromium
+	@$(MAKE) --no-print-directory --silent --jobs=2 $(SETUP) $(FILMS)
+	@# An open page or a running box takes a core for as long as it is there: one at a time, beside all others.
+	@$(MAKE) --no-print-directory --jobs=3 tests-of-the-whole tests-of-parts tests-of-the-page
 
 WHOLE := tests/browser tests/system
 .PHONY: tests-of-the-page tests-of-the-whole tests-of-parts
 tests-of-the-page: $(WEB)/node_modules/.ready
-	cd $(WEB) && npm run --silent check && npm test
+	cd $(WEB) && npm test
 
 tests-of-the-whole: $(VENV)/.ready
 	$(PYTHON) -m pytest -q $(WHOLE)
 
 tests-of-parts: $(VENV)/.ready # many wait, for processes and deadlines; the order is that of tests/conftest.py
-	$(PYTHON) -m pytest -q -n 4 --dist loadfile --no-loadscope-reorder $(addprefix --ignore=,$(WHOLE))
+	$(PYTHON) -m pytest -q -n 3 --dist loadfile --no-loadscope-reorder $(addprefix --ignore=,$(WHOLE))
 
-check: $(VENV)/.ready ## Formatting, types, import boundaries and the fast tests; under a minute
+# Each process of pytest rewrites and compiles every test that it has not found compiled: 5 s of CPU.
+test check fast-tests: export PYTHONDONTWRITEBYTECODE :=
+
+check: $(VENV)/.ready ## Formatting, types, import boundaries and the fast tests; under a minute (of the page: lint-page)
 	@$(MAKE) --no-print-directory --jobs=2 --output-sync=line lint fast-tests # the type checker leaves cores idle
 
-.PHONY: lint fast-tests
+.PHONY: lint lint-page fast-tests
 fast-tests: $(VENV)/.ready
 	$(PYTHON) -m pytest -q -n 2 --dist loadfile -m "not slow and not browser"
 
@@ -69,7 +73,12 @@ lint: $(VENV)/.ready
 	lint-imports
 	mypy
 
-setup: $(VENV)/.ready networks film web bytecode kernels ## Install everything that the two commands need
+lint-page: $(WEB)/node_modules/.ready ## Formatting and types of the page
+	cd $(WEB) && npm run --silent check
+
+SETUP := $(VENV)/.ready networks film web bytecode kernels
+setup: ## Install everything that the two commands need
+	@$(MAKE) --no-print-directory --silent --jobs=2 $(SETUP)
 
 $(VENV)/.ready: requirements.lock pyproject.toml deploy/setup/check-machine
 	@deploy/setup/check-machine

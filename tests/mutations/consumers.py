@@ -22,6 +22,7 @@ ASKED: set[str] = set()
 _NOT_RECEIVED = frozenset({"publish", "declare_alive", "watch_alive"})
 
 
+@lru_cache(maxsize=1)
 def patterns() -> dict[str, str]:
     """A key expression for everything that `models.messages.topics` names, `*` standing for any process, camera or kind."""
     found: dict[str, str] = {}
@@ -43,7 +44,8 @@ def received() -> dict[str, frozenset[str]]:
     found = {}
     for package in PACKAGES:
         for path in sorted((ROOT / package).rglob("*.py")):
-            tree = ast.parse(path.read_text())
+            text = path.read_text()
+            tree = ast.parse(text if "subscribe" in text else "")
             if any(_is_call_of(node, {"subscribe"}) for node in ast.walk(tree)):
                 found[_module(path)] = frozenset(_received(tree))
     return found
