@@ -42,7 +42,7 @@ run: setup ## Start KineBox on the built-in lesson (SOURCE=footage or footage2: 
 	@exec kinebox run --site $(SITE) --data $(DATA)
 
 test: ## All tests but the four suites below: unit, property, golden, real sockets and processes, the page in Chromium
-	@$(MAKE) --no-print-directory --silent --jobs=2 $(SETUP) $(FILMS)
+	@$(MAKE) --no-print-directory --silent --jobs=2 $(SETUP) $(FILMS) $(DATA)/tests.ready
 	@# An open page or a running box takes a core for as long as it is there: one at a time, beside all others.
 	@$(MAKE) --no-print-directory --jobs=3 tests-of-the-whole tests-of-parts tests-of-the-page
 
@@ -55,10 +55,14 @@ tests-of-the-whole: $(VENV)/.ready
 	$(PYTHON) -m pytest -q $(WHOLE)
 
 tests-of-parts: $(VENV)/.ready # many wait, for processes and deadlines; the order is that of tests/conftest.py
-	$(PYTHON) -m pytest -q -n 3 --dist loadfile --no-loadscope-reorder $(addprefix --ignore=,$(WHOLE))
+	$(PYTHON) -m pytest -q -n 4 --dist loadfile --no-loadscope-reorder $(addprefix --ignore=,$(WHOLE))
 
-# Each process of pytest rewrites and compiles every test that it has not found compiled: 5 s of CPU.
+# Each process of pytest compiles every test that it does not find compiled, for 10 s of CPU: one does it before the others begin.
 test check fast-tests: export PYTHONDONTWRITEBYTECODE :=
+$(DATA)/tests.ready: $(shell find tests -name '*.py') | $(VENV)/.ready
+	@mkdir -p $(@D)
+	@$(PYTHON) -m pytest --collect-only -qq > /dev/null
+	@touch $@
 
 check: $(VENV)/.ready ## Formatting, types, import boundaries and the fast tests; under a minute (of the page: lint-page)
 	@$(MAKE) --no-print-directory --jobs=2 --output-sync=line lint fast-tests # the type checker leaves cores idle
