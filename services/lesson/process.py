@@ -53,7 +53,7 @@ class RecorderLoop:
         self._subscription = self._bus.subscribe(topics.fusion_log(), topics.lesson_request(), keep=KEEP)
         with getting_ready(context.name, self._bus, "lessons that were cut short are completed"):
             unfinished = recover(folder, context.start_ns)
-        self._recorder = Recorder(folder, context.site.lessons, self._header, unfinished)
+        self._recorder = Recorder(folder, context.site.lessons, self._header, context.start_ns, unfinished)
         self._asking = Asking()
 
     def run(self) -> None:

@@ -20,6 +20,7 @@ from models.errors import UserError
 from models.messages.health import RecorderHealth
 from models.messages.lesson import FusionLog, SegmentRequest
 from models.messages.trouble import Trouble
+from services.lesson import told_to_stop
 from services.lesson.folder_lock import is_locked, lock
 from services.lesson.following import Following
 from services.lesson.free_names import numbered
@@ -58,6 +59,7 @@ class Recorder:
         folder: of the lessons, locked; it is made and locked anew for the next lesson if somebody took it away.
         config: of the site.
         header: the header of a lesson of this title that begins now.
+        run_ns: CLOCK_MONOTONIC at the start of this run of the box.
         unfinished: a lesson to go on with; None if there is none.
         clock_ns: CLOCK_MONOTONIC.
     """
@@ -67,14 +69,17 @@ class Recorder:
         folder: Path,
         config: LessonsConfig,
         header: Callable[[str], LessonHeader],
+        run_ns: int,
         unfinished: LessonWriter | None = None,
         clock_ns: Callable[[], int] = time.monotonic_ns,
     ) -> None:
         self._folder = folder
         self._config = config
         self._header = header
+        self._run_ns = run_ns
         self._clock_ns = clock_ns
-        self._automatic_ns: int | None = clock_ns() if config.automatic else None
+        by_itself = config.automatic and not told_to_stop.is_noted(folder, run_ns)
+        self._automatic_ns: int | None = clock_ns() if by_itself else None
         self._ended: Trouble | None = None
         self._running: _Running | None = None
         self._lock: BinaryIO | None = None
@@ -107,7 +112,9 @@ class Recorder:
 
         Who wishes it goes on until it is done: then nothing is unsaid about how it ended.
         """
-        self._automatic_ns = None
+        if self._automatic_ns is not None:
+            self._automatic_ns = None
+            self._note_wish()
         if self._running is not None:
             self._ended = None
         self._finish()
@@ -188,6 +195,13 @@ class Recorder:
             attempts=writer.attempts,
             newest=writer.newest_attempts,
         )
+
+    def _note_wish(self) -> None:
+        try:
+            told_to_stop.note(self._folder, self._run_ns)
+        except OSError as error:
+            words = "that no lesson shall begin by itself could not be noted: if the recorder is started again, one does"
+            log.warning(words, folder=str(self._folder), reason=error.strerror)
 
     def _begin(self, writer: LessonWriter, gap: str = "") -> None:
         now_ns = self._clock_ns()

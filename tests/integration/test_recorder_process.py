@@ -234,6 +234,26 @@ def test_an_automatic_recorder_records_from_the_start_of_the_box(tmp_path: Path)
         assert box.parts(lesson)
 
 
+def test_kill_9_of_an_automatic_recorder_that_was_told_to_stop_records_nobody(tmp_path: Path) -> None:
+    with Box(tmp_path, LessonsConfig(automatic=True)).running() as box:
+        with box.recorder() as process:
+            box.wait_recorded(process.pid, parts=2)
+            box.wish("stop")
+        with box.recorder() as again:
+            begun_s: list[float] = []
+
+            def spoke_for_three_seconds() -> bool:
+                box.listen(0.2)
+                if box.newest is not None and box.newest.pid == again.pid:
+                    assert box.newest.recorder is not None
+                    assert not box.newest.recorder.lesson
+                    begun_s.append(time.monotonic())
+                return bool(begun_s) and begun_s[-1] - begun_s[0] > 3.0
+
+            until(spoke_for_three_seconds, "the second recorder to be heard")
+        assert len(LessonIndex(box.lessons).lessons()) == 1
+
+
 def test_while_it_recovers_what_was_left_the_recorder_is_heard(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     router = MemoryRouter()
     heard = router.open().subscribe(topics.health("recorder"), keep=1)

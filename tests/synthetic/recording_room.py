@@ -26,9 +26,11 @@ class Room:
         monkeypatch.setattr(module, "free_disk_mib", lambda _folder: self.free_mb * 1e6 / 2**20)
         self.recorder = self.started(automatic=automatic)
 
-    def started(self, unfinished: LessonWriter | None = None, *, automatic: bool = False) -> Recorder:
+    def started(self, unfinished: LessonWriter | None = None, *, automatic: bool = False, run_ns: int | None = None) -> Recorder:
+        """A recorder of the run of the box that lessons name, or of another one."""
+        run_ns = header().run_ns if run_ns is None else run_ns
         config = LessonsConfig(automatic=automatic)
-        return Recorder(self.folder, config, self._header, unfinished, lambda: self.now_ns)
+        return Recorder(self.folder, config, self._header, run_ns, unfinished, lambda: self.now_ns)
 
     def asks(self) -> SegmentRequest | None:
         """What fusion is asked for once the recorder has looked after its disk."""

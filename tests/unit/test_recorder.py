@@ -1,9 +1,11 @@
 """The recorder: lessons begin and end as people wish."""
 
+import errno
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from structlog.testing import capture_logs
 
 from models.messages import codec
 from models.messages.attempts import REMEMBERED
@@ -15,6 +17,7 @@ from services.lesson.lesson_reader import open_lesson
 from services.lesson.pupils import attempts_told
 from services.lesson.recorder import RETRY_NS, SILENT_NS, lesson_name
 from services.lesson.recovery import recover
+from services.lesson.told_to_stop import SUFFIX as WISH_SUFFIX
 from tests.mutations.samples import feedback
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
 from tests.synthetic.recording_room import Room
@@ -160,6 +163,47 @@ def test_an_automatic_recorder_begins_by_itself_and_stops_for_good_when_told_to(
     room.recorder.stop()
     room.now_ns += 2 * RETRY_NS
     assert room.asks() is None
+
+
+def test_an_automatic_recorder_that_was_told_to_stop_and_then_died_does_not_record_when_it_is_started_again(
+    automatic_room: Room,
+) -> None:
+    room = automatic_room
+    room.record(parts=1)
+    room.recorder.stop()
+    for _ in range(2):
+        room.recorder = room.started(recover(room.folder, header().run_ns), automatic=True)
+        room.now_ns += 2 * RETRY_NS
+        assert room.asks() is None
+    room.recorder.start("7b")
+    assert room.asks() is not None
+
+
+def test_the_next_start_of_the_box_records_by_itself_again_and_nothing_is_left_of_earlier_wishes(automatic_room: Room) -> None:
+    room = automatic_room
+    for run_ns in (1, 2, 3):
+        room.recorder = room.started(automatic=True, run_ns=run_ns)
+        room.now_ns += 60 * SECOND_NS
+        assert room.asks() is not None
+        room.recorder.stop()
+    assert len(room.files(WISH_SUFFIX)) == 1
+
+
+def test_a_wish_that_cannot_be_kept_is_said_and_ends_the_lesson_all_the_same(
+    automatic_room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    room = automatic_room
+    room.record(parts=1)
+
+    def refuse(*_: object, **__: object) -> None:
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    with monkeypatch.context() as broken, capture_logs() as logs:
+        broken.setattr(Path, "touch", refuse)
+        room.recorder.stop()
+    assert room.asks() is None
+    assert len(room.files(SUFFIX)) == 1
+    assert "Read-only file system" in [line.get("reason") for line in logs]
 
 
 @pytest.mark.parametrize(
