@@ -5,7 +5,7 @@ line and leaves with exit code `USER_ERROR_CODE`; anything else that is raised i
 """
 
 USER_ERROR_CODE = 2
-"""Exit code of a process that said in one line what a person must do; starting it again cannot help."""
+"""Exit code of a process that said in one line what a person must do; until that is done, starting it again cannot help."""
 USER_ERROR_PREFIX = "kinebox: "
 """How that line begins, by which the supervisor knows it among all others."""
 

@@ -127,7 +127,7 @@ class LogsConfig(Section, frozen=True):
 
 
 class SupervisorConfig(Section, frozen=True):
-    """When a part that keeps failing is given up."""
+    """When a part that keeps failing is given up. One that worked, and now says what must be mended, waits until it is."""
 
     max_restarts: Annotated[int, Meta(ge=0, le=100, description="restarts of one process within the window")] = 5
     window_s: Annotated[float, Meta(gt=0, le=3600, description="length of the window")] = 60.0

@@ -110,13 +110,13 @@ class BusLink:
         return beats
 
     def say(
-        self, troubles: tuple[Trouble, ...], failed: dict[str, Trouble], machine: MachineHealth | None, supervisor: SupervisorHealth
+        self, troubles: tuple[Trouble, ...], absent: dict[str, Trouble], machine: MachineHealth | None, supervisor: SupervisorHealth
     ) -> None:
         """Once a second, publish how the box is held together.
 
         Args:
             troubles: what is being mended, or is wrong with the machine; makes the state "degraded".
-            failed: why, by name, processes are given up, for which nobody else speaks now; makes it "failed".
+            absent: why, by name, processes are not there, for which nobody else speaks now; one that is given up makes it "failed".
             machine: its newest measurement.
             supervisor: what became of the processes.
         """
@@ -125,12 +125,16 @@ class BusLink:
             return
         refused, self._refused = self._refused, 0
         troubles = (*troubles, messages_refused(refused)) if refused else troubles
-        given_up = tuple(Trouble("given_up", f"{name} is given up: {trouble.words}") for name, trouble in failed.items())
-        state: State = "failed" if failed else "degraded" if troubles else "ok"
+        given_up = tuple(
+            Trouble("given_up", f"{name} is given up: {trouble.words}")
+            for name, trouble in absent.items()
+            if trouble.code == "given_up"
+        )
+        state: State = "failed" if given_up else "degraded" if troubles else "ok"
 
         def words() -> None:
             own = joined.reporter.report(state, (*given_up, *troubles), machine=machine, supervisor=supervisor)
-            for name, trouble in failed.items():
+            for name, trouble in absent.items():
                 message = Health(name, own.pid, own.t_ns, "failed", (trouble,), cpu_cores=0.0, rss_mib=0.0)
                 joined.bus.publish(topics.health(name), codec.encode(message))
 

@@ -6,9 +6,10 @@ from dataclasses import dataclass, field
 from models.config.site import SupervisorConfig
 from models.errors import USER_ERROR_CODE
 from models.messages.health import Restarts, State
-from models.messages.trouble import TroubleCode
+from models.messages.trouble import Trouble, TroubleCode
+from models.process import REPLAY, ROUTER
 from services.supervisor.child import Child, ChildSpec
-from services.supervisor.policy import GiveUp, History, Restart, decide
+from services.supervisor.policy import GiveUp, History, Restart, decide, try_again
 from services.support.signals import signal_name
 
 SETTLES_WITHIN_S = 10.0
@@ -32,7 +33,10 @@ class Post:
         ended_s: when it ended last or could not be started, on CLOCK_MONOTONIC; None if it never did.
         last_end: what became of it then, as a verb.
         hangs: the running process was found hung, and is being killed for it.
+        worked: a process of it was at work since the box was started.
+        refusal: what a person must do until it can be manned, in the words of the process that ended with them; empty while it is.
         history: its restarts until now, by which it is decided whether there is another.
+        refusals: those restarts that followed a line for people.
     """
 
     spec: ChildSpec
@@ -47,7 +51,10 @@ class Post:
     ended_s: float | None = None
     last_end: str = ""
     hangs: bool = False
+    worked: bool = False
+    refusal: str = ""
     history: History = field(default_factory=History)
+    refusals: History = field(default_factory=History)
 
     @property
     def name(self) -> str:
@@ -56,7 +63,7 @@ class Post:
 
     def manned_by(self, child: Child) -> None:
         """The process was started."""
-        self.child, self.start_at_s, self.hangs = child, None, False
+        self.child, self.start_at_s, self.hangs, self.refusal = child, None, False, ""
 
     def reports(self, state: str, troubles: Iterable[TroubleCode], now_s: float) -> bool:
         """The process told its state and what is wrong: whether that is news for a person.
@@ -65,6 +72,7 @@ class Post:
         """
         if self.first_heard_s is None:
             self.first_heard_s = now_s
+        self.worked = self.worked or state != "starting"
         if state in _UNSETTLED and now_s - self.first_heard_s < SETTLES_WITHIN_S:
             return False
         new = set(troubles) - self.told
@@ -77,35 +85,63 @@ class Post:
         self.child = None
         self.reported, self.first_heard_s = "ok", None
         self.told = set()
-        why = "hung" if self.hangs else describe_exit(code)
-        if code == USER_ERROR_CODE and not self.hangs:
-            self.ended_s, self.last_end = now_s, why
-            self.given_up = user_error or why
+        if code == USER_ERROR_CODE and user_error and not self.hangs:
+            self._refused(user_error, now_s, config)
         else:
-            self._failed(why, now_s, config)
+            self._failed("hung" if self.hangs else describe_exit(code), now_s, config)
 
     def not_started(self, error: OSError, now_s: float, config: SupervisorConfig) -> None:
         """The machine could not start the process: decide what becomes of the post, as if it had ended."""
         self.start_at_s = None
         self._failed(f"could not be started ({error.strerror})", now_s, config)
 
+    def _refused(self, line: str, now_s: float, config: SupervisorConfig) -> None:
+        """The process ended with a line that says what a person must do.
+
+        When the box is started somebody is there to read it, and nothing was there before that could come back. Later on a lesson
+        is running, and what was there may return by itself or by that person's hand.
+        """
+        why = f"said: {line}"
+        if self.spec.entry == REPLAY or not self.worked:
+            self.ended_s, self.last_end = now_s, why
+            self._give_up(line)
+        elif self.spec.entry == ROUTER:
+            self._failed(why, now_s, config)  # Nobody is heard while it waits, and given up it is stood in for.
+        else:
+            restart = try_again(self.refusals, now_s)
+            self.refusals = self.refusals.add(restart)
+            self.ended_s, self.last_end, self.start_at_s = now_s, why, restart.at_s
+            self.refusal = f"{line}; it is tried again"
+            self.trouble = f"{self.name} {why}; it is tried again"
+
     def _failed(self, why: str, now_s: float, config: SupervisorConfig) -> None:
         self.ended_s, self.last_end = now_s, why
         decision = decide(self.history, now_s, config)
         match decision:
             case GiveUp(reason):
-                self.given_up = f"{reason}; last, it {why}"
+                self._give_up(f"{reason}; last, it {why}")
             case Restart(at_s):
                 self.history = self.history.add(decision)
                 self.start_at_s = at_s
                 self.trouble = f"{self.name} {why} and is started again"
+
+    def _give_up(self, why: str) -> None:
+        self.given_up, self.trouble = why, ""
+
+    @property
+    def absence(self) -> Trouble | None:
+        """What is said in its place; None if a process speaks for itself, or will at once."""
+        if self.given_up:
+            return Trouble("given_up", self.given_up)
+        return Trouble("restarting", self.refusal) if self.refusal else None
 
     @property
     def restarts(self) -> Restarts | None:
         """What is told of it on the bus; None if it never ended."""
         if self.ended_s is None:
             return None
-        return Restarts(self.name, len(self.history.restarts_s), round(self.ended_s * 1e9), self.last_end, self.given_up)
+        count = len(self.history.restarts_s) + len(self.refusals.restarts_s)
+        return Restarts(self.name, count, round(self.ended_s * 1e9), self.last_end, self.given_up)
 
 
 def describe_exit(code: int) -> str:

@@ -252,12 +252,12 @@ class Supervisor:
                     self._silence.forget(name)
 
     def _speak(self, link: BusLink) -> None:
-        failed = {post.name: Trouble("given_up", post.given_up) for post in self._posts if post.given_up}
+        absent = {post.name: absence for post in self._posts if (absence := post.absence) is not None}
         restarting = (Trouble("restarting", post.trouble) for post in self._posts if post.trouble)
         log = (self._journal.trouble,) if self._journal.trouble is not None else ()
         restarts = tuple(restarts for post in self._posts if (restarts := post.restarts) is not None)
         own = SupervisorHealth(self._version, self._start_ns, restarts)
-        link.say((*restarting, *self._machine.troubles, *log), failed, self._machine.newest, own)
+        link.say((*restarting, *self._machine.troubles, *log), absent, self._machine.newest, own)
 
     def _look_at_machine(self, now_s: float) -> None:
         for trouble in self._machine.look(now_s):

@@ -1,8 +1,9 @@
 """Parts of a box that cost nothing: they report their health and do as a file in the data folder tells them when they start.
 
 `data/orders/NAME` holds one word: "crash", "hang" (reports no more once there is a file `data/hang`), "deaf" (to SIGTERM), "noise"
-(prints what is no log line), "refuse" (ends with a line for people), "stop the second" (the second of that name stops itself),
-"ail" (reports that it failed while there is a file `data/ail`) or "linger" (beats, and takes three seconds to end of itself).
+(prints what is no log line), "refuse" (ends with a line for people), "refuse again" (does so while there is a file `data/refuse`),
+"stop the second" (the second of that name stops itself), "ail" (reports that it failed while there is a file `data/ail`) or
+"linger" (beats, and takes three seconds to end of itself).
 `data/starts/NAME` gets a line a start: process id, common beginning, folder of compiled kernels.
 """
 
@@ -57,7 +58,7 @@ def _report_until_stopped(context: ProcessContext, server: socket.socket | None 
     order = _order(context)
     if order == "crash":
         raise RuntimeError("crashed as ordered")
-    if order == "refuse":
+    if order == "refuse" or (order == "refuse again" and (context.data / "refuse").exists()):
         raise UserError(f"camera '{context.camera}': film.avi is missing; run 'make footage'")
     if order == "linger":
         _beat_and_linger(context)

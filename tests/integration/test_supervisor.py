@@ -138,6 +138,26 @@ def test_a_process_that_says_what_a_person_must_do_is_not_started_again(tmp_path
         assert line in box.errors.read_text()
 
 
+def test_a_process_that_worked_and_cannot_for_a_while_is_told_with_its_line_and_comes_back_by_itself(tmp_path: Path) -> None:
+    line = "camera 'a': film.avi is missing; run 'make footage'"
+    with Box(tmp_path, {"edge-a": "refuse again"}, "[supervisor]\nmax_restarts = 1\n") as box:
+        box.wait_started()
+        with HealthWatch(box) as watch:
+            heard = watch.wait_for("supervisor", "ok")
+            watch.wait_for("edge-a", "ok", after_ns=heard.t_ns)
+            (box.data / "refuse").touch()
+            os.kill(box.pid("edge-a"), signal.SIGKILL)
+            assert watch.wait_for("edge-a", "failed").reason == f"{line}; it is tried again"
+            assert f"edge-a said: {line}; it is tried again" in watch.wait_for("supervisor", "degraded").reason
+            box.wait_restarted("edge-a", 5)
+            (box.data / "refuse").unlink()
+            watch.wait_for("edge-a", "ok")
+            watch.wait_for("supervisor", "ok")
+        assert box.end() == 0
+        assert "given up" not in box.errors.read_text()
+        assert "edge-a runs again" in box.errors.read_text()
+
+
 def test_no_process_outlives_a_supervisor_that_was_killed(tmp_path: Path) -> None:
     with Box(tmp_path, {"edge-a": "deaf"}) as box:
         box.wait_started()
