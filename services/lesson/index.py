@@ -19,8 +19,8 @@ from services.lesson.survey import survey
 
 NAME = "index.sqlite"
 _VERSION = 3
-_PATIENCE_S = 5.0
-"""How long to wait for another process that writes."""
+_PATIENCE_S = 1.0
+"""How long to wait for another process that writes. A recorder may be the one that waits; a list that is not kept is made again."""
 
 _LATEST_NS = 2**63 - 1
 """Of a file's date; a file system may know later ones, SQLite and calendars do not."""

@@ -8,23 +8,28 @@ import structlog
 from models.camera.rig import encode_rig
 from models.messages import codec, topics
 from models.messages.lesson import FusionLog, LessonRequest
-from models.messages.trouble import messages_refused
+from models.messages.trouble import Trouble, messages_refused
 from models.process import Delivery, ProcessContext
 from services.lesson import origin
 from services.lesson.asking import Asking
+from services.lesson.disk_wait import LONGEST_S, DiskWait
 from services.lesson.folder_lock import lock
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.recorder import Recorder
 from services.lesson.recovery import recover
 from services.site_file.rendering import render
 from services.support.getting_ready import getting_ready
-from services.support.health import HealthReporter
+from services.support.health import HealthReporter, ResourceMeter
 from services.support.machine import clocks_ns
 from services.support.version import kinebox_version
 
 KEEP = 64
 """Unread parts: fusion sends up to 40 (20 s) again in one go, and new ones come in between."""
 _ROUND_S = 0.1
+_DISK = (
+    f"what is missed within {LONGEST_S:.0f} s is made up for; if it comes again, see what else writes on that disk, "
+    "or take a faster one"
+)
 
 log = structlog.get_logger()
 
@@ -55,22 +60,28 @@ class RecorderLoop:
             unfinished = recover(folder, context.start_ns)
         self._recorder = Recorder(folder, context.site.lessons, self._header, context.start_ns, unfinished)
         self._asking = Asking()
+        self._told = self._recorder.health()
+        self._stand_in = HealthReporter(context.name, context.bus, ResourceMeter())
 
     def run(self) -> None:
         """Take what comes; ask fusion for its log while recording; once a second, say how things are."""
         self._bus.declare_alive(topics.alive(self._context.name))
-        try:
-            while not self._context.stop.is_set():
-                delivery = self._subscription.receive(_ROUND_S)
-                if delivery is not None:
-                    self._receive(delivery)
-                if self._reporter.due():
-                    self._second_passed()
-                if self._asking.due(time.monotonic_ns()):
-                    self._ask()
-        finally:
-            self._recorder.close()
-            self._subscription.close()
+        with DiskWait(self._disk_waits) as disk:
+            try:
+                while not self._context.stop.is_set():
+                    delivery = self._subscription.receive(_ROUND_S)
+                    if delivery is not None:
+                        with disk.at_work():
+                            self._receive(delivery)
+                    if self._reporter.due():
+                        with disk.at_work():
+                            self._second_passed()
+                    if self._asking.due(time.monotonic_ns()):
+                        self._ask()
+            finally:
+                with disk.at_work():
+                    self._recorder.close()
+                self._subscription.close()
 
     def _receive(self, delivery: Delivery) -> None:
         try:
@@ -101,7 +112,14 @@ class RecorderLoop:
         refused = messages_refused(self._rejected) if self._rejected else None
         troubles = tuple(filter(None, (self._recorder.trouble, refused)))
         self._rejected = 0
-        self._reporter.report("degraded" if troubles else "ok", troubles, recorder=self._recorder.health())
+        self._told = self._recorder.health()
+        self._reporter.report("degraded" if troubles else "ok", troubles, recorder=self._told)
+
+    def _disk_waits(self, waited_s: float) -> None:
+        """Called beside the loop, which is held up: what it said last is still so."""
+        if self._stand_in.due():
+            words = f"the disk with the lessons has held up the recorder for {waited_s:.0f} s"
+            self._stand_in.report("degraded", (Trouble("recording_stalled", words, _DISK),), recorder=self._told)
 
     def _header(self, title: str) -> LessonHeader:
         wall_ns, monotonic_ns = clocks_ns()

@@ -266,3 +266,42 @@ def test_while_it_recovers_what_was_left_the_recorder_is_heard(tmp_path: Path, m
     monkeypatch.setattr("services.lesson.process.recover", recover)
     context = ProcessContext("recorder", None, SITE, RIG, tmp_path, 0, router.open(), threading.Event(), ResourceMeter())
     RecorderLoop(context, tmp_path)
+
+
+def test_while_the_disk_holds_up_a_write_the_recorder_says_so_once_a_second_and_then_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    router, stop, disk_takes = MemoryRouter(), threading.Event(), threading.Event()
+    room = router.open()
+    heard, healths = room.subscribe(topics.health("recorder"), keep=100), list[Health]()
+
+    def said(count: int, *, lesson: bool, troubled: bool) -> bool:
+        while (delivery := heard.receive(0.1)) is not None:
+            healths.append(read_health(delivery.topic, delivery.payload))
+        recent = [(bool(one.recorder and one.recorder.lesson), bool(one.troubles)) for one in healths]
+        return recent[-count:] == [(lesson, troubled)] * count
+
+    synced = os.fsync
+
+    def sync(descriptor: int) -> None:
+        disk_takes.wait(DEADLINE_S)
+        synced(descriptor)
+
+    monkeypatch.setattr("services.lesson.lesson_file.os.fsync", sync)
+    loop = RecorderLoop(ProcessContext("recorder", None, SITE, RIG, tmp_path, 0, router.open(), stop, ResourceMeter()), tmp_path)
+    running = threading.Thread(target=loop.run)
+    running.start()
+    try:
+        until(lambda: said(1, lesson=False, troubled=False), "the recorder to be heard")
+        room.publish(topics.lesson_request(), codec.encode(LessonRequest("start", "7b")))
+        until(lambda: said(3, lesson=False, troubled=True), f"words about the disk; heard {healths}")
+        assert [trouble.code for trouble in healths[-1].troubles] == ["recording_stalled"]
+        assert "disk" in healths[-1].reason
+        before_ns, after_ns = (one.t_ns for one in healths[-2:])
+        assert after_ns - before_ns >= 900_000_000, "the page wants no more than one a second"
+        disk_takes.set()
+        until(lambda: said(2, lesson=True, troubled=False), f"the lesson to begin; heard {healths}")
+    finally:
+        disk_takes.set()
+        stop.set()
+        running.join(DEADLINE_S)
