@@ -23,6 +23,7 @@ from services.logs.printable import printable
 from services.logs.readable import details, local, speaker
 from services.logs.record import LogRecord, record_of
 from services.logs.writer import IN_USE, LogWriter
+from services.supervisor.console import Console
 from services.supervisor.traceback_lines import TracebackLines
 
 _LOUD = frozenset({"warning", "error", "critical"})
@@ -33,7 +34,7 @@ _DEFAULTS = LogsConfig()
 
 
 class Journal:
-    """Writes lines. A console that is gone or a disc that is full or read-only must not stop the box.
+    """Writes lines. A console that is gone, or that nobody reads, or a disc that is full or read-only must not stop the box.
 
     While nothing can be kept, which is said once, the console gets everything.
 
@@ -51,7 +52,8 @@ class Journal:
         self, folder: Path, console: TextIO | None = None, config: LogsConfig = _DEFAULTS, command: str = "kinebox logs"
     ) -> None:
         self.path = folder / LATEST
-        self._console = console or sys.stderr
+        self._console = Console(console or sys.stderr)
+        self._output = Console(sys.stdout)
         self._command = command
         self._tracebacks: dict[str, TracebackLines] = defaultdict(TracebackLines)
         self._writer = LogWriter(folder, int(config.max_file_mb * 1e6), config.max_files)
@@ -69,7 +71,10 @@ class Journal:
             self._keep(record_of({"event": line.removeprefix(USER_ERROR_PREFIX), "level": "error"}, process, _now()))
 
     def settle(self) -> None:
-        """Write down the tracebacks that are whole by now, and see whether a problem is over; to be called now and then."""
+        """Write down the tracebacks that are whole by now, and see whether a problem is over; to be called now and then.
+
+        The same for a console that was not read.
+        """
         now_s = time.monotonic()
         for process, traceback in self._tracebacks.items():
             if traceback.is_over(now_s):
@@ -78,6 +83,9 @@ class Journal:
             self._next_try_s = now_s + _TRY_AGAIN_S
             self._writer.try_again(_now())
             self._tell_problem()
+        if left_out := self._console.left_out():
+            kept = "" if self.trouble is not None else f"; '{self._command}' has them"
+            self.say(f"nobody read what is shown here: {left_out} lines were left out{kept}", level="warning")
 
     def say(self, event: str, *, level: str = "info", **fields: str) -> None:
         """A line of the supervisor's own; a person always sees it."""
@@ -96,17 +104,15 @@ class Journal:
 
     def welcome(self, block: str) -> None:
         """Lines meant for a person only, on stdout."""
-        try:
-            sys.stdout.write(block + "\n")
-            sys.stdout.flush()
-        except OSError:
-            pass
+        self._output.show(block + "\n")
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the file, and let go of the console."""
         for process in self._tracebacks:
             self._end_traceback(process)
         self._writer.close()
+        self._console.close()
+        self._output.close()
 
     def _end_traceback(self, process: str) -> None:
         if (ended := self._tracebacks[process].end()) is not None:
@@ -136,11 +142,7 @@ class Journal:
             lines += record.exception.splitlines()
         elif record.exception:
             lines[0] += f" ('{self._command}' has the traceback)"
-        try:
-            self._console.write("\n".join(lines) + "\n")
-            self._console.flush()
-        except OSError:
-            pass
+        self._console.show("\n".join(lines) + "\n")
 
 
 def _now() -> dt.datetime:

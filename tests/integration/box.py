@@ -78,6 +78,7 @@ class Box:
         orders: what the fake parts are told, by process.
         more: further lines of the site file.
         edge, tablet: entry points of the process of a camera and of the page's server.
+        console: a descriptor in the place of the files that take what a person is shown.
     """
 
     def __init__(
@@ -87,6 +88,8 @@ class Box:
         more: str = "",
         edge: str = "tests.integration.fake_parts:edge",
         tablet: str = "tests.integration.fake_parts:tablet",
+        *,
+        console: int | None = None,
     ) -> None:
         self.data = folder / "data"
         (self.data / "orders").mkdir(parents=True)
@@ -100,8 +103,8 @@ class Box:
             self.process = subprocess.Popen(
                 bound([sys.executable, "-m", "services.cli.main", "run", "--site", str(self.site), "--data", str(self.data)]),
                 env=fake_parts(folder, edge=edge, tablet=tablet),
-                stdout=output,
-                stderr=errors,
+                stdout=output if console is None else console,
+                stderr=errors if console is None else console,
                 cwd=ROOT,
                 start_new_session=True,
             )

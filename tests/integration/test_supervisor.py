@@ -1,8 +1,12 @@
 """`kinebox run` with real processes that crash, hang and refuse."""
 
+import contextlib
 import os
+import pty
 import re
 import signal
+import termios
+from collections.abc import Callable
 from pathlib import Path
 
 import msgspec
@@ -25,6 +29,44 @@ def test_a_box_starts_tells_where_its_page_is_and_ends_cleanly(tmp_path: Path) -
         assert box.end() == 0
         assert box.running() == []
         assert len(box.start_times_ns()) == 1
+
+
+def full_pipe() -> tuple[int, int]:
+    """A pager at its first page: where it would read, and where nothing more can be written."""
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    with contextlib.suppress(BlockingIOError):
+        while True:
+            os.write(writer, b"." * 1024)
+    os.set_blocking(writer, True)
+    return reader, writer
+
+
+def stopped_terminal() -> tuple[int, int]:
+    """A terminal after Ctrl-S: its screen, and where nothing can be written."""
+    screen, terminal = pty.openpty()
+    termios.tcflow(terminal, termios.TCOOFF)
+    return screen, terminal
+
+
+@pytest.mark.parametrize("make", [full_pipe, stopped_terminal])
+def test_a_console_that_nobody_reads_keeps_nobody_from_being_restarted_nor_the_box_from_ending(
+    tmp_path: Path, make: Callable[[], tuple[int, int]]
+) -> None:
+    reader, console = make()
+    with Box(tmp_path, {"edge-b": "noise"}, console=console) as box:
+        os.close(console)
+        box.wait_started()
+        with HealthWatch(box) as watch:
+            watch.wait_for("edge-a", "ok")
+            os.kill(box.pid("edge-a"), signal.SIGKILL)
+            box.wait_restarted("edge-a")
+            watch.wait_for("edge-a", "ok", box.pid("edge-a"))
+        assert box.end() == 0
+        assert box.running() == []
+        said = (box.data / "logs" / "kinebox.log").read_text()
+        assert "edge-a was ended by SIGKILL and is started again" in said
+    os.close(reader)
 
 
 def test_ctrl_c_ends_the_box_cleanly(tmp_path: Path) -> None:

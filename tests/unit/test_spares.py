@@ -29,7 +29,8 @@ class Room:
         self.console = io.StringIO()
         self.begun: list[Child] = []
         self.taken: list[Child] = []
-        self.spares = Spares(lambda _: self._begin(code), Journal(folder, self.console))
+        self.journal = Journal(folder, self.console)
+        self.spares = Spares(lambda _: self._begin(code), self.journal)
 
     def keep(self, now_s: float = AFTER_S) -> Child:
         self.spares.keep(TABLET, 0.0, now_s)
@@ -39,6 +40,11 @@ class Room:
         spare = self.spares.take("tablet")
         self.taken += [] if spare is None else [spare]
         return spare
+
+    def said(self) -> str:
+        """All that a person was shown until now; nothing is shown any more."""
+        self.journal.close()
+        return self.console.getvalue()
 
     def _begin(self, code: str) -> Child:
         self.begun.append(Child([sys.executable, "-c", code], os.environ, waits=True))
@@ -68,7 +74,7 @@ def test_a_spare_that_is_stopped_does_not_take_the_post(room: Room) -> None:
     stop(spare)
     assert room.take() is None
     assert spare.poll() == -signal.SIGKILL
-    assert "tablet" in room.console.getvalue()
+    assert "tablet" in room.said()
 
 
 @pytest.mark.parametrize("room", [WAITS], indirect=True)
@@ -88,7 +94,7 @@ def test_a_spare_that_is_stopped_while_it_waits_is_replaced_a_minute_later(room:
     room.keep(AFTER_S + 1.0)
     assert room.keep(AFTER_S + AGAIN_AFTER_S - 1.0) is spare
     assert room.keep(AFTER_S + AGAIN_AFTER_S) is not spare
-    assert room.console.getvalue().count("stopped") == 1
+    assert room.said().count("stopped") == 1
 
 
 @pytest.mark.parametrize("room", [IS_READY], indirect=True)
@@ -97,7 +103,7 @@ def test_a_spare_says_when_it_is_ready_and_the_log_does_not(room: Room, tmp_path
     taken = room.take()
     assert taken is not None
     assert taken.ready
-    assert room.console.getvalue() == ""
+    assert room.said() == ""
     assert SPARE_READY not in (tmp_path / "kinebox.log").read_text()
 
 

@@ -40,10 +40,9 @@ def test_people_get_plain_lines_in_their_own_time_and_are_not_bothered_with_info
     console = io.StringIO()
     journal = Journal(tmp_path, console)
     journal.child_said("fusion", INFO)
-    assert console.getvalue() == ""
     journal.child_said("edge-cam02", WARNING)
-    assert console.getvalue() == "05:04:05  camera cam02  refused topic=gym/x\n"
     journal.close()
+    assert console.getvalue() == "05:04:05  camera cam02  refused topic=gym/x\n"
     first, second = (msgspec.json.decode(line) for line in journal.path.read_text().splitlines())
     assert (first["event"], first["rate_hz"], second["event"], second["topic"]) == ("governor", 15, "refused", "gym/x")
     assert list(first) == ["time", "process", "level", "event", "rate_hz"]
@@ -135,7 +134,7 @@ def test_a_printed_traceback_is_one_record_whatever_ends_it(tmp_path: Path, endi
         journal.child_said("fusion", line)
         journal.child_said("edge-a", INFO)
         journal.settle()
-    assert "fusion" not in console.getvalue()
+    assert {entry["level"] for entry in entries_of(journal)} == {"info"}, "nothing of the traceback yet"
     if ending == "a log line":
         journal.child_said("fusion", INFO)
     elif ending == "the supervisor's word":
@@ -144,7 +143,7 @@ def test_a_printed_traceback_is_one_record_whatever_ends_it(tmp_path: Path, endi
         now_s += 1.0
         journal.settle()
     if ending == "silence":
-        assert "crashed" in console.getvalue()
+        assert "crashed" in journal.path.read_text()
     journal.close()
     found = [entry for entry in entries_of(journal) if "exception" in entry]
     assert [(entry["process"], entry["level"], entry["event"]) for entry in found] == [

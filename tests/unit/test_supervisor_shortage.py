@@ -66,11 +66,13 @@ def test_a_spare_that_cannot_be_started_is_said_and_tried_again_a_minute_later(t
         asked.append(spec.name)
         raise SHORT
 
-    spares = Spares(begin, Journal(tmp_path, console))
+    journal = Journal(tmp_path, console)
+    spares = Spares(begin, journal)
     for now_s in (AFTER_S, AFTER_S + 1.0, AFTER_S + AGAIN_AFTER_S - 1.0):
         spares.keep(ChildSpec("tablet"), 0.0, now_s)
     assert asked == ["tablet"]
-    assert "a spare of tablet could not be started (Cannot allocate memory)" in console.getvalue()
     spares.keep(ChildSpec("tablet"), 0.0, AFTER_S + AGAIN_AFTER_S)
     assert asked == ["tablet", "tablet"]
     assert spares.take("tablet") is None
+    journal.close()
+    assert "a spare of tablet could not be started (Cannot allocate memory)" in console.getvalue()
