@@ -35,7 +35,7 @@ class Report:
         figures: by name; of those that are means over seeds, `deviations` has the standard deviation.
         rows: further values for programs.
         tables: further values for people, and for programs, too.
-        bars: what figures are held against, as (">=", "<=" or "within", value).
+        bars: what figures are held against, as (">=", "<=" or "within", value); of all that this run was to measure.
     """
 
     target: str
@@ -82,15 +82,25 @@ class Report:
         path.with_suffix(".md").write_text(f"{heading}{seeds}\n{tables}")
         return path
 
+    @property
+    def missed(self) -> list[str]:
+        """The figures that do not meet their bar; those that could not be measured do not, either."""
+        return [name for name, bar in self.bars.items() if not self._meets(name, bar)]
+
     def summary(self) -> ResultTable:
-        """All figures, each beside its bar."""
+        """All figures, each beside its bar, and the bars of those that could not be measured."""
+        missed = self.missed
         rows: list[tuple[Cell, ...]] = []
-        for name, value in self.figures.items():
-            sign, limit = self.bars.get(name, ("", math.nan))
-            met = "" if not sign else "met" if _COMPARISONS[sign](value, limit) else "missed"
-            cell = Spread(value, self.deviations.get(name, math.nan), len(self.seeds))
-            rows.append((name, cell, f"{sign} {limit:g}" if sign else "", met))
+        for name in [*self.figures, *(name for name in self.bars if name not in self.figures)]:
+            value, bar = self.figures.get(name), self.bars.get(name)
+            cell = None if value is None else Spread(value, self.deviations.get(name, math.nan), len(self.seeds))
+            met = "" if bar is None else "missed" if name in missed else "met"
+            rows.append((name, cell, "" if bar is None else f"{bar[0]} {bar[1]:g}", met))
         return ResultTable("figures", ("figure", "value", "bar", "met"), tuple(rows))
+
+    def _meets(self, name: str, bar: tuple[str, float]) -> bool:
+        value, (sign, limit) = self.figures.get(name), bar
+        return value is not None and _COMPARISONS[sign](value, limit)
 
     def show(self, bars: Mapping[str, tuple[str, float]]) -> None:
         """Print the figures, those in `bars` as met or missed, and the tables."""

@@ -60,3 +60,15 @@ def test_a_single_seed_has_no_deviation() -> None:
     assert spread([]) is None
     assert spread([1.0, float("inf")]) is None
     assert shown(float("nan")) == shown(None) == ""
+
+
+def test_a_bar_whose_figure_could_not_be_measured_is_missed_and_does_not_vanish(tmp_path: Path) -> None:
+    report = Report("bench-toy")
+    report.add({"a": 1.0, "b": 1.0, "c": 1.0, "d": float("nan")})
+    report.show({"a": (">=", 1.0), "b": (">=", 2.0), "d": ("<=", 0.0), "e": ("within", 5.0)})
+    assert report.missed == ["b", "d", "e"]
+    _, text = written(report, tmp_path)
+    assert "| a | 1 | >= 1 | met |" in text
+    assert "| c | 1 |  |  |" in text
+    assert "| d |  | <= 0 | missed |" in text
+    assert "| e |  | within 5 | missed |" in text
