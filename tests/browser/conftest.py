@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import Any, Protocol
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from services.tablet import process
 from tests.browser.room import Room
@@ -75,6 +75,9 @@ def room() -> Iterator[Room]:
 def errors() -> list[str]:
     """What pages could not cope with; at the end there must be nothing."""
     return []
+
+
+expect.set_options(timeout=_GENEROUS_MS)
 
 
 class Tablets(Protocol):

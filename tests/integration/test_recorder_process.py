@@ -119,7 +119,7 @@ class Box:
             recorder = newest.recorder if newest is not None and newest.pid == pid else None
             return recorder is not None and recorder.recorded_s >= parts / PARTS_A_SECOND
 
-        until(done, f"{parts} parts to be recorded; newest: {self.newest}")
+        until(done, lambda: f"{parts} parts to be recorded; newest: {self.newest}")
         assert self.newest is not None
         assert self.newest.recorder is not None
         return self.newest.recorder
