@@ -2,7 +2,8 @@
 
 The box runs as it is shipped and records; a minute of it is measured. Then what was recorded is written again at fixed rates, so
 that the size does not hang on the machine's speed: every picture's own observation, at the given rate of every camera, by the
-writer that the recorder uses. With a second person in every picture, that person is taken from a picture of another time.
+writer that the recorder uses. With a second person in every picture, that person is taken from a picture of another time. Every
+nine seconds an attempt ends, as in a class of thirty of whom everybody has ten.
 """
 
 import argparse
@@ -12,18 +13,18 @@ from collections import defaultdict
 from collections.abc import Iterator
 from itertools import cycle
 from pathlib import Path
-from typing import get_args
 
 import msgspec
 
 from models.messages import codec
-from models.messages.lesson import Entry, EntryKind, FusionLog
+from models.messages.lesson import Entry, FusionLog
 from models.messages.observation import Observation
 from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_reader import LessonPart, open_lesson
 from tests.bench.report import Report
 from tests.bench.running_box import CpuMeter, processes, rss_mb, running_box
+from tests.browser.attempts import tried
 from tests.integration.waiting import free_port, until
 
 BARS = {
@@ -33,6 +34,8 @@ BARS = {
 }
 LESSON_S = 45 * 60
 PARTS_A_SECOND = 2
+A_SECOND = {"tick": 30, "motion": 30, "health": 8}
+ATTEMPT_EVERY_S = 9
 WRITTEN_S = 60
 STARTING_S = 180.0
 CAMERAS = 4
@@ -73,16 +76,19 @@ def written_again(lesson: Path, folder: Path, name: str, observation_hz: float, 
     with open_lesson(lesson) as opened:
         header, parts = opened.header, list(opened.parts())
     kinds = {kind: cycle(payloads) for kind, payloads in _payloads(parts, persons).items()}
-    a_part = {"observation": round(CAMERAS * observation_hz), "tick": 30, "motion": 30, "health": 8}
+    a_second = A_SECOND | {"observation": round(CAMERAS * observation_hz)}
+    attempt = codec.encode(tried("basketball_shot", "no_knee_bend"))
     writer = LessonWriter.create(folder, name, header)
     for sequence in range(WRITTEN_S * PARTS_A_SECOND):
         begin_ns = sequence * 10**9 // PARTS_A_SECOND
-        counts = {kind: count // PARTS_A_SECOND for kind, count in a_part.items()}
+        counts = {kind: count // PARTS_A_SECOND for kind, count in a_second.items()}
         entries = [
             Entry(kind, begin_ns + k * 10**9 // PARTS_A_SECOND // count, next(kinds[kind]))  # type: ignore[arg-type]
             for kind, count in counts.items()
             for k in range(count)
         ]
+        if sequence % (ATTEMPT_EVERY_S * PARTS_A_SECOND) == 0:
+            entries.append(Entry("feedback", begin_ns, attempt))
         writer.append(FusionLog(1, sequence, tuple(sorted(entries, key=lambda entry: entry.t_ns))))
     return writer.finish().stat().st_size / WRITTEN_S * LESSON_S / 1e6
 
@@ -93,7 +99,7 @@ def _payloads(parts: list[LessonPart], persons: int) -> dict[str, list[bytes]]:
         for entry in part.entries:
             found[entry.kind].append(entry.payload)
     found["observation"] = list(_with_persons(found["observation"], persons))
-    missing = [kind for kind in get_args(EntryKind) if not found[kind]]
+    missing = [kind for kind in ("observation", *A_SECOND) if not found[kind]]
     if missing:
         raise SystemExit(f"the lesson has no {missing[0]}: did the cameras run? See bench/box.log in the data folder")
     return found

@@ -21,6 +21,8 @@ from tests.demonstrations import hidden, shown
 from tests.integration.school import counting, file_of, import_refused
 from tests.taught import shipped
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize(
     ("kind", "handed", "rate_hz"), [("trc", "right", 30.0), ("trc", "left", 59.94), ("c3d", "left", 100.0), ("bvh", "left", 50.0)]

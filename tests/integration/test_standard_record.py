@@ -34,8 +34,9 @@ from tests.integration.fusion_room import SITE as ROOM
 from tests.integration.school import SITE, counting, holds, lesson_of, record_refused
 from tests.taught import shipped
 
+pytestmark = pytest.mark.slow
 
-@pytest.mark.slow
+
 def test_a_left_handed_pupils_attempt_becomes_the_standard_by_which_the_next_is_judged(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -98,7 +99,6 @@ def twice() -> tuple[Track, FoundAttempt, FoundAttempt]:
     return both, one, replace(other, moments_s=(start, exertion, peak, end))
 
 
-@pytest.mark.slow
 def test_an_attempt_is_numbered_as_the_report_that_evaluated_again_numbers_it(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -229,7 +229,6 @@ def test_attempts_that_are_not_there_are_refused(tmp_path: Path) -> None:
     assert "does not exist" in record_refused(tmp_path, tmp_path / "gone.mcap", Record(1))
 
 
-@pytest.mark.slow
 def test_in_a_lesson_in_which_nobody_told_of_attempts_they_are_looked_for(tmp_path: Path) -> None:
     track, attempt = shown("squat")
     record(recorded(tmp_path / "lessons", track), tmp_path, None, Record(1))

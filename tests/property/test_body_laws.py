@@ -14,6 +14,8 @@ from models.skeleton import coco_feet, smpl
 from tests.bodies import body_model, someone
 from tests.synthetic.toy_smpl import toy_body
 
+pytestmark = pytest.mark.slow
+
 SEEDS = st.integers(0, 10_000)
 TURNS = arrays(np.float64, (smpl.COUNT, 3), elements=st.floats(-2.5, 2.5, allow_subnormal=False))
 PLACES = arrays(np.float64, (3,), elements=st.floats(-5, 5, allow_subnormal=False))

@@ -16,6 +16,8 @@ from services.evaluation.track import Track, known_track
 from services.evaluation.uncertainty import EXACT, NETWORK, Uncertainty, roots
 from tests.stick_figure import DOWN, LEFT, figure, turned
 
+pytestmark = pytest.mark.slow
+
 SIGMA_M = 0.006
 COUNT = 30
 STATURE = Stature(1.5, 0.0)

@@ -23,6 +23,8 @@ from tests.demonstrations import hidden, shown
 from tests.pupils import pupil
 from tests.taught import placed, shipped, some
 
+pytestmark = pytest.mark.slow
+
 SIDED = ("badminton_clear", "soccer_kick", "cartwheel")
 ALL = tuple(shipped().standards)
 WAIT = 30
@@ -109,7 +111,6 @@ def test_others_who_do_it_well_are_mostly_green_and_who_does_something_else_is_n
     assert (feedback.colours[peak - 1 : peak + 2, [elbow, wrist]] == Colour.RED).all()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("action", ALL)
 def test_attempts_are_found_and_timed_by_a_recorded_standard_as_by_the_shipped_one(action: str) -> None:
     handed: Handed = "left" if action in SIDED else "right"

@@ -19,6 +19,8 @@ from services.support.own_standards import OwnStandards
 from tests.integration.waiting import DEADLINE_S
 from tests.unit.test_own_standards import holds, named, origins
 
+pytestmark = pytest.mark.slow
+
 
 class Fails:
     """What changes the disk works, but for the call of this number."""
@@ -125,7 +127,6 @@ def _put(own: Path, origin: str) -> None:
     OwnStandards(own).put(named(origin))
 
 
-@pytest.mark.slow
 def test_two_at_the_same_time_lose_nothing(tmp_path: Path) -> None:
     makers = [multiprocessing.get_context("spawn").Process(target=_put, args=(tmp_path, f"{number}")) for number in range(4)]
     for maker in makers:
@@ -138,7 +139,6 @@ def test_two_at_the_same_time_lose_nothing(tmp_path: Path) -> None:
     assert own.counts("squat").version == 5
 
 
-@pytest.mark.slow
 def test_killed_at_whatever_step_every_version_is_there_as_a_whole(tmp_path: Path) -> None:
     for at in range(1, 7):
         own = OwnStandards(tmp_path / f"{at}")
