@@ -69,7 +69,7 @@ check: $(VENV)/.ready ## Formatting, types, import boundaries and the fast tests
 
 .PHONY: lint lint-page fast-tests
 fast-tests: $(VENV)/.ready
-	$(PYTHON) -m pytest -q -n 2 --dist loadfile -m "not slow and not browser"
+	$(PYTHON) -m pytest -q -n 2 --dist loadfile -m "not slow" $(addprefix --ignore=,$(WHOLE) tests/faults)
 
 lint: $(VENV)/.ready
 	ruff format --check .

@@ -3,6 +3,7 @@
 from functools import cache
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -18,6 +19,8 @@ from services.evaluation.keyframes import in_order, keyframes_of, room_for
 from services.evaluation.normalise import lead_right, mirrored
 from services.evaluation.track import known_track
 from tests.bench.teaching.finding import shipped
+
+pytestmark = pytest.mark.slow
 
 ANGLES = st.floats(-np.pi, np.pi)
 PLACES = st.tuples(st.floats(-20, 20), st.floats(-20, 20))

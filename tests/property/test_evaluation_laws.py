@@ -21,6 +21,8 @@ from models.skeleton import coco
 from services.evaluation.pipeline import initial_state, step
 from tests.taught import performance, placed, some
 
+pytestmark = pytest.mark.slow
+
 ACTIONS: Final = ("basketball_shot", "squat", "soccer_kick")
 CONFIG: Final = some(*ACTIONS)
 FRAME_NS: Final = 33_333_333
@@ -158,7 +160,6 @@ def script_of(chunks: list[tuple[object, ...]]) -> list[Event]:
     return script.events
 
 
-@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(st.lists(_chunks(), max_size=10))
 def test_whatever_comes_the_evaluation_goes_on_and_what_it_says_can_be_sent(chunks: list[tuple[object, ...]]) -> None:
@@ -175,7 +176,6 @@ _TRIED: Final[list[tuple[object, ...]]] = [("nobody", 40), ("choose", ""), ("per
 """Whoever was there before has gone, and somebody squats for all to see."""
 
 
-@pytest.mark.slow
 @settings(max_examples=20, deadline=None)
 @given(st.lists(_chunks(), max_size=8))
 def test_no_movement_is_told_twice_and_one_that_is_seen_is_told(chunks: list[tuple[object, ...]]) -> None:
@@ -186,7 +186,6 @@ def test_no_movement_is_told_twice_and_one_that_is_seen_is_told(chunks: list[tup
     assert (said[-1].action, said[-1].handed) == ("squat", "right")
 
 
-@pytest.mark.slow
 @settings(max_examples=5, deadline=None)
 @given(st.lists(_chunks(), min_size=1, max_size=8))
 def test_the_same_events_give_the_same_feedback_to_the_last_bit(chunks: list[tuple[object, ...]]) -> None:
@@ -208,7 +207,6 @@ def test_live_motions_are_not_looked_at(action: str) -> None:
 
 @settings(max_examples=6, deadline=None)
 @given(st.floats(-3.1, 3.1), st.floats(-2, 2), st.sampled_from(ACTIONS))
-@pytest.mark.slow
 def test_where_in_the_room_and_facing_where_an_attempt_is_made_changes_nothing(heading: float, aside_m: float, action: str) -> None:
     events = attempts(action)
     (here,) = told(events)

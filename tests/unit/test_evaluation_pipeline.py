@@ -23,6 +23,8 @@ from tests.property.test_evaluation_laws import CONFIG, Event, Script, told
 from tests.taught import shipped
 from tests.unit.test_attempts import stretched
 
+pytestmark = pytest.mark.slow
+
 SOON = 4
 """Frames after an attempt's end: fewer than it is waited for something better."""
 
@@ -148,7 +150,6 @@ def test_of_whom_no_shank_was_seen_while_he_tried_is_told_that_nothing_can_be_sa
     assert (feedback.states == JointState.SEEN).any(), "the pupil himself is shown"
 
 
-@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(
     st.sampled_from(
@@ -164,7 +165,6 @@ def test_a_trunk_that_is_hidden_for_a_moment_costs_no_attempt(joints: tuple[str,
     assert (feedback.colours[feedback.states == JointState.UNKNOWN] == Colour.GREY).all()
 
 
-@pytest.mark.slow
 @settings(max_examples=20, deadline=None)
 @given(
     st.sampled_from((("left_ankle", "right_ankle"), ("left_shoulder",), ("right_shoulder",), ("left_knee", "right_ankle"))),
@@ -193,7 +193,6 @@ def slow_descent(slower: float) -> tuple[EvaluationConfig, Script]:
     return EvaluationConfig({"squat": shipped().teachings["squat"]}, {"squat": standard}), script
 
 
-@pytest.mark.slow
 def test_an_attempt_of_more_than_half_a_minute_is_told_of_as_a_whole() -> None:
     config, script = slow_descent(1.7)
     (output,) = (output for output in outputs_of(script.events, config)[1] if output != NOTHING)

@@ -16,6 +16,8 @@ from tests.demonstrations import shown
 from tests.pupils import pupil
 from tests.taught import placed, shipped
 
+pytestmark = pytest.mark.slow
+
 CLEAR = shipped().standards["badminton_clear"]
 WAIT = 30
 AFTER = 60
