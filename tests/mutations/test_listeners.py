@@ -53,8 +53,9 @@ def test_the_supervisor_takes_no_other_message_for_a_sign_of_life(topic: str, co
     for delivery in deliveries(topic, count, growth):
         mailbox.put(topics.health("fusion"), delivery.payload)
         assert unread_healths(mailbox) == ([], 1)
-        mailbox.put(topics.beat("fusion"), delivery.payload)
-        assert unread_beats(mailbox) == ([], 1)
+        if not delivery.payload.isdigit():  # What was cut down to a number is a beat, of a process that nobody waits for.
+            mailbox.put(topics.beat("fusion"), delivery.payload)
+            assert unread_beats(mailbox) == ([], 1)
     assert growth.mb < GROWTH_MB
 
 
