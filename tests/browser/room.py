@@ -33,6 +33,7 @@ from services.bus.memory import MemoryBus, MemoryRouter
 from services.evaluation.memory import Memory
 from services.tablet import process
 from tests.browser.attempts import ending
+from tests.integration.waiting import until
 from tests.synthetic.gym import ring_rig
 from tests.synthetic.person import Person
 
@@ -106,6 +107,8 @@ class Room:
 
     def __init__(self, port: int | None = None, person: Person | None = None) -> None:
         self.scene = Scene()
+        self.played: Scene | None = None
+        """The scene that was played last."""
         self.port = port or free_port()
         self.person = person or Person(height_m=1.6, radius_m=0.7)
         self._router = MemoryRouter()
@@ -203,6 +206,7 @@ class Room:
             if now_ns - healthy_ns > 1_000_000_000:
                 healthy_ns = now_ns
                 self._publish_health(scene, now_ns)
+            self.played = scene
 
     def _motion(self, scene: Scene, sequence: int, t_person_s: float, now_ns: int) -> Motion:
         states = np.full(coco.COUNT, JointState.SEEN, np.uint8)
@@ -365,5 +369,6 @@ def _wait_until_joined(router: MemoryRouter, thread: threading.Thread) -> None:
 
 
 def with_scene(room: Room, **changes: object) -> None:
-    """Change what the room says, in one step."""
-    room.scene = replace(room.scene, **changes)  # type: ignore[arg-type]
+    """Change what the room says, in one step, and wait until it has said so: the next change may undo this one."""
+    room.scene = scene = replace(room.scene, **changes)  # type: ignore[arg-type]
+    until(lambda: room.played is scene, "the room to play its new scene")
