@@ -77,24 +77,29 @@ def _told(track: Track, attempt: FoundAttempt, pupil: str) -> Feedback:
     return appraise(track, attempt, "recognised", Moments(last_s, BEGIN_NS + round(last_s * SECOND_NS), 0), shipped(), pupil)
 
 
+def smooth_motion(track: Track, frame: int) -> Motion:
+    """A frame as fusion publishes it; time 0 is `BEGIN_NS`."""
+    known = track.states[frame] != JointState.UNKNOWN
+    t_ns = BEGIN_NS + round(float(track.t_s[frame]) * SECOND_NS)
+    return Motion(
+        kind="smooth",
+        sequence=frame,
+        epoch=0,
+        t_ns=t_ns,
+        t_newest_ns=t_ns,
+        t_published_ns=t_ns,
+        joints_m=np.where(known[:, None], track.joints_m[frame], 0).astype(np.float32),
+        covariance_m2=np.where(known[:, None, None], track.covariance_m2[frame], 0).astype(np.float32),
+        states=track.states[frame].astype(np.uint8),
+        views=np.zeros(coco.COUNT, np.uint32),
+        cameras=(),
+    )
+
+
 def _log(track: Track, feedbacks: Sequence[Feedback]) -> Iterator[Entry]:
-    for frame, t_s in enumerate(track.t_s.tolist()):
-        known = track.states[frame] != JointState.UNKNOWN
-        t_ns = BEGIN_NS + round(t_s * SECOND_NS)
-        motion = Motion(
-            kind="smooth",
-            sequence=frame,
-            epoch=0,
-            t_ns=t_ns,
-            t_newest_ns=t_ns,
-            t_published_ns=t_ns,
-            joints_m=np.where(known[:, None], track.joints_m[frame], 0).astype(np.float32),
-            covariance_m2=np.where(known[:, None, None], track.covariance_m2[frame], 0).astype(np.float32),
-            states=track.states[frame].astype(np.uint8),
-            views=np.zeros(coco.COUNT, np.uint32),
-            cameras=(),
-        )
-        yield Entry("tick", t_ns, b"")
-        yield Entry("motion", t_ns, codec.encode(motion))
+    for frame in range(len(track.t_s)):
+        motion = smooth_motion(track, frame)
+        yield Entry("tick", motion.t_ns, b"")
+        yield Entry("motion", motion.t_ns, codec.encode(motion))
     for feedback in feedbacks:
         yield Entry("feedback", feedback.t_published_ns, codec.encode(feedback))

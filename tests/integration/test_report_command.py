@@ -21,7 +21,6 @@ from models.messages import codec
 from models.messages.feedback import Feedback
 from models.messages.health import EvaluationHealth, Health
 from models.messages.lesson import Entry, FusionLog
-from models.messages.motion import JointState, Motion
 from models.messages.pupil import PupilCorrection, PupilCorrections, PupilTurn
 from services.cli import report as command
 from services.cli.report import Order, write_report
@@ -32,6 +31,7 @@ from services.evaluation.report.document import Report
 from services.evaluation.track import Track, known_track
 from services.lesson.lesson_file import LessonWriter
 from tests.browser.attempts import ending
+from tests.demonstrations import smooth_motion
 from tests.installed import ROOT
 from tests.reported import BEGUN_NS, attempt
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header
@@ -51,24 +51,6 @@ def moving(*actions: str) -> Track:
     return known_track(np.concatenate(joints), FRAME_S, 0.01)
 
 
-def motion_of(track: Track, frame: int) -> Motion:
-    known = track.states[frame] != JointState.UNKNOWN
-    t_ns = BEGIN_NS + round(frame * FRAME_S * SECOND_NS)
-    return Motion(
-        kind="smooth",
-        sequence=frame,
-        epoch=0,
-        t_ns=t_ns,
-        t_newest_ns=t_ns,
-        t_published_ns=t_ns,
-        joints_m=np.where(known[:, None], track.joints_m[frame], 0).astype(np.float32),
-        covariance_m2=np.where(known[:, None, None], track.covariance_m2[frame], 0).astype(np.float32),
-        states=track.states[frame].astype(np.uint8),
-        views=np.zeros(17, np.uint32),
-        cameras=(),
-    )
-
-
 def log_of(track: Track | None, *feedbacks: Feedback, up: PupilTurn | None = None) -> Iterator[Entry]:
     yield Entry("tick", BEGIN_NS, b"")
     if up is not None:
@@ -76,7 +58,7 @@ def log_of(track: Track | None, *feedbacks: Feedback, up: PupilTurn | None = Non
         health = Health("evaluation", 1, BEGIN_NS, "ok", (), 0.1, 1.0, evaluation=evaluation)
         yield Entry("health", BEGIN_NS, codec.encode(health))
     for frame in range(0 if track is None else len(track)):
-        motion = motion_of(track, frame)  # type: ignore[arg-type]
+        motion = smooth_motion(track, frame)  # type: ignore[arg-type]
         yield Entry("motion", motion.t_ns, codec.encode(motion))
     for feedback in feedbacks:
         yield Entry("feedback", feedback.t_published_ns, codec.encode(feedback))
