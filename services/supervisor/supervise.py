@@ -243,13 +243,21 @@ class Supervisor:
             self._journal.say(f"{post.name} runs again")
 
     def _kill_hung(self, now_s: float) -> None:
-        for name in self._silence.hung(now_s):
-            for post in self._posts:
-                if post.name == name and post.child is not None:
-                    self._journal.say(f"{name} hangs: nothing heard for too long; ending it", level="warning")
-                    post.hangs = True
-                    post.child.kill()
-                    self._silence.forget(name)
+        silent = self._silence.hung(now_s)
+        for post in self._posts:
+            if post.child is None or post.hangs:
+                continue
+            if post.name in silent:
+                self._end_hung(post, post.child, "nothing heard for too long")
+            elif post.first_heard_s is None and post.child.stopped:
+                # Its silence would be put down to its start for two minutes.
+                self._end_hung(post, post.child, "a signal stopped it before it was heard")
+
+    def _end_hung(self, post: Post, child: Child, why: str) -> None:
+        self._journal.say(f"{post.name} hangs: {why}; ending it", level="warning")
+        post.hangs = True
+        child.kill()
+        self._silence.forget(post.name)
 
     def _speak(self, link: BusLink) -> None:
         absent = {post.name: absence for post in self._posts if (absence := post.absence) is not None}

@@ -79,6 +79,8 @@ def test_a_spare_that_is_stopped_makes_no_outage(tmp_path: Path) -> None:
         until(lambda: "fusion" in spares(box), "a spare")
         stopped = spares(box)["fusion"]
         os.kill(stopped, signal.SIGSTOP)
+        # Who waits for a CPU stops only when it gets one.
+        until(lambda: psutil.Process(stopped).status() == psutil.STATUS_STOPPED, "the spare to be stopped")
         os.kill(box.pid("fusion"), signal.SIGKILL)
         box.wait_restarted("fusion")
         assert box.pid("fusion") != stopped
@@ -92,6 +94,15 @@ def test_a_spare_that_is_stopped_as_it_takes_over_is_found_out_in_seconds(tmp_pa
         box.wait_started()
         log = box.data / "logs" / "kinebox.log"
         until(lambda: "a spare of fusion is ready" in log.read_text(), "a spare that is ready")
+        os.kill(box.pid("fusion"), signal.SIGKILL)
+        box.wait_restarted("fusion", starts=3)
+        assert box.end() == 0
+        assert "fusion hung and is started again" in box.errors.read_text()
+
+
+def test_a_process_that_is_stopped_before_it_was_ever_heard_is_found_out_in_seconds(tmp_path: Path) -> None:
+    with Box(tmp_path, {"fusion": "stop the second"}, more="[supervisor]\nspares = false\n") as box:
+        box.wait_started()
         os.kill(box.pid("fusion"), signal.SIGKILL)
         box.wait_restarted("fusion", starts=3)
         assert box.end() == 0
