@@ -145,6 +145,8 @@ class SmoothingConfig:
         knots: length of the window in grid instants.
         iterations: reweighting steps a tick; a position is stepped on in every tick that it is in the window.
         robust_sigmas: as in triangulation.
+        recapture_views: by how many views fewer must object to a triangulated position than to the smoother's for it to go on from
+            there; infinite is never.
         limb_sigma: one sigma of a limb's length as a share of it (eq. 16); infinite switches the term off.
         limb_samples: instants over which a limb's length is estimated.
     """
@@ -157,6 +159,7 @@ class SmoothingConfig:
     knots: int = 18
     iterations: int = 1
     robust_sigmas: float = 3.0
+    recapture_views: float = 0.5
     limb_sigma: float = 0.03
     limb_samples: int = 90
 
@@ -186,8 +189,11 @@ class FusionConfig:
 
 
 def _paper() -> FusionConfig:
-    """Eq. 8 as printed: second difference, distal joints smoothed most; no limb-length residual on joints that are seen."""
-    smoothing = SmoothingConfig(order=2, difference_m=by_distance_from_trunk(0.020, 0.011, 0.006), limb_sigma=float("inf"))
+    """Eq. 8 as printed: second difference, distal joints smoothed most; no limb-length residual on joints that are seen, nothing
+    caught again."""
+    gamma = by_distance_from_trunk(0.020, 0.011, 0.006)
+    never = float("inf")
+    smoothing = SmoothingConfig(order=2, difference_m=gamma, limb_sigma=never, recapture_views=never)
     return replace(FusionConfig(preset="paper"), smoothing=smoothing)
 
 

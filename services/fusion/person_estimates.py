@@ -11,6 +11,7 @@ from services.fusion.config import FusionConfig
 from services.fusion.history import FilterHistory, Seed
 from services.fusion.joint_filter import Expectation
 from services.fusion.limbs import ENDS, LimbLengths
+from services.fusion.recapture import recapture
 from services.fusion.singer import separations2
 from services.fusion.smoothing import Smoother
 from services.fusion.swap import repair
@@ -122,12 +123,11 @@ class PersonEstimates:
 
         `now_s` is when the newest picture was taken, whether the person is in it or not.
         """
-        newest = np.array([self._tracks.newest_s(camera) for camera in range(len(self._views))])
-        fresh = newest[newest >= newest.max() - _STALE_S]
-        if not np.isfinite(newest.max()):
+        fresh = self._fresh_s()
+        if not len(fresh):
             return
         self._give_up(now_s, config)
-        if now_s - newest.max() > _longest_s(config):
+        if now_s - fresh.max() > _longest_s(config):
             return
         instant = max(float(fresh.min()), self.since_s)
         filters = self._filters.at(instant)
@@ -157,6 +157,7 @@ class PersonEstimates:
         The window's end is newer than the newest picture; what it says there is its own extrapolation.
         """
         self._reach(now_s, config)
+        self._recapture(config)
         smooth_s = np.array(grid) * config.frame_s
         memory_s = config.filter.view_memory_s
         memories = np.append(np.full(len(grid), 0.5 * memory_s), memory_s)
@@ -188,6 +189,22 @@ class PersonEstimates:
                 continue
             ahead.advance(index * config.frame_s, config.filter)
             self._smoother.foresee(index, ahead.state[:, :3], ahead.alive)
+
+    def _recapture(self, config: FusionConfig) -> None:
+        """Catch what the smoother lost, at the instants between the slowest camera's newest picture and the fastest one's."""
+        fresh = self._fresh_s()
+        if not len(fresh):
+            return
+        oldest, newest = (int(np.floor(t_s / config.frame_s)) for t_s in (fresh.min(), fresh.max()))
+        for index in range(max(oldest, self._smoother.first), min(newest, self._smoother.last) + 1):
+            centre_m = self.body.at(index * config.frame_s)[:3]
+            recapture(self._smoother, index, self._tracks, self._views, centre_m, _REACH_M, config)
+
+    def _fresh_s(self) -> Float:
+        """(n,) when each of the cameras that still see the person did last."""
+        newest = np.array([self._tracks.newest_s(camera) for camera in range(len(self._views))])
+        fresh: Float = newest[np.isfinite(newest) & (newest >= newest.max() - _STALE_S)]
+        return fresh
 
     def _pose(
         self, t_s: float, points_m: Float, covariance_m2: Float, views: UInt32, agreed_s: Float, config: FusionConfig

@@ -101,6 +101,15 @@ class Smoother:
         np.copyto(self.positions_m[knot], points_m.T, where=known)
         self.known[:, knot] |= known
 
+    def at(self, index: int) -> Float:
+        """(17, 3) where the joints are taken to be at a grid instant within the window."""
+        positions: Float = self.positions_m[index - self.first].T.copy()
+        return positions
+
+    def move(self, index: int, points_m: Float, which: Bool) -> None:
+        """Take the flagged joints (17,) to be at these (17, 3) at a grid instant within the window."""
+        np.copyto(self.positions_m[index - self.first], points_m.T, where=which)
+
     def restart(self, joint: int, t_s: float, point_m: Float) -> None:
         """Take a joint to have been at a position (3,) from `t_s` on, and wherever it was unknown."""
         instants = (self.first + np.arange(self._config.knots)) * self._frame_s

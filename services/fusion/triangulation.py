@@ -77,6 +77,13 @@ def triangulate(
     )
 
 
+def objections(
+    views: Views, points_px: Float, sigma_px: Float, usable: Bool, config: TriangulationConfig, points_m: Float
+) -> Float:
+    """By how many views points (J, 3) are objected to: (J,) sums of their Geman-McClure costs, each in [0, 1]; NaN of a NaN."""
+    return objections_to(views.projections, points_px, sigma_px, usable, config.robust_sigmas**2, points_m)
+
+
 @compiled
 def _project(projection: Float, point: Float, jacobian: Float) -> tuple[float, float, float]:
     """Pixel and depth of a world point; fills the (2, 3) Jacobian. Depth <= 0 is behind the camera."""
@@ -146,6 +153,15 @@ def _objection(
         d2 = ((point[0] - prior[0]) ** 2 + (point[1] - prior[1]) ** 2 + (point[2] - prior[2]) ** 2) / (prior_m * prior_m)
         total += d2 / (d2 + 1.0)
     return total
+
+
+@compiled
+def objections_to(projections: Float, pixels: Float, sigma: Float, usable: Bool, scale2: float, points: Float) -> Float:
+    """The kernel of `objections`."""
+    out, no_prior, jacobian = np.empty(points.shape[0]), np.full(3, np.nan), np.empty((2, 3))
+    for j in range(points.shape[0]):
+        out[j] = _objection(projections, pixels[:, j], sigma[:, j], usable[:, j], points[j], no_prior, scale2, 1.0, jacobian)
+    return out
 
 
 @compiled

@@ -1,0 +1,48 @@
+"""Joints that the smoother has lost are caught again.
+
+The smoother's data term is robust: a picture that shows a joint far from where it is thought to be counts for nothing. That keeps
+mistakes of the network out. But a foot that is swung faster than the filter foresaw is out of every picture's reach as well, and
+stays there for as long as the swing lasts, however well all cameras see it. So the instants that pictures have just reached are
+looked at without any memory: where triangulation finds a point to which clearly fewer views object than to the smoother's, the
+smoother goes on from there. What it makes of it is still its own matter.
+"""
+
+import numpy as np
+
+from models.arrays import Bool, Float
+from services.fusion.config import FusionConfig
+from services.fusion.smoothing import Smoother
+from services.fusion.timing import Tracks
+from services.fusion.triangulation import objections, triangulate
+from services.fusion.views import Views
+
+
+def recapture(
+    smoother: Smoother, index: int, tracks: Tracks, views: Views, centre_m: Float, reach_m: float, config: FusionConfig
+) -> Bool:
+    """Catch lost joints at one grid instant within the window.
+
+    Args:
+        smoother: changed in place.
+        index: of the grid instant.
+        tracks: of the person.
+        views: the cameras.
+        centre_m: (3,) the body's centre then.
+        reach_m: no joint is further from it.
+        config: `smoothing.recapture_views` says by how many views fewer must object.
+
+    Returns:
+        (17,) the joints that were caught.
+    """
+    least = config.smoothing.recapture_views
+    points, sigma, usable = tracks.at(index * config.frame_s, config.timing)
+    against = objections(views, points, sigma, usable, config.triangulation, smoother.at(index))
+    usable = usable & (against > least)
+    caught: Bool = np.zeros(len(against), np.bool_)
+    if usable.any():
+        found = triangulate(views, points, sigma, usable, config.triangulation)
+        fewer = against - objections(views, points, sigma, usable, config.triangulation, found.points_m)
+        near = np.linalg.norm(found.points_m - centre_m, axis=1) < reach_m
+        caught = near & (found.count >= 2) & (fewer > least)  # where nothing was found all is NaN, and nothing is true
+        smoother.move(index, found.points_m, caught)
+    return caught
