@@ -9,7 +9,7 @@ from services.tablet.messages import CameraReason, CameraState, CameraStatus
 from services.tablet.presence import Presence
 
 START_GRACE_NS = 20_000_000_000
-"""So long may a camera be starting after its process, or this server, came: networks are loaded."""
+"""So long may a process be starting after it, or this server, came: networks are loaded."""
 SILENT_AFTER_NS = 3_000_000_000
 """A process says how it is every second; three missed are no accident."""
 BEHIND_SHARE = 0.7

@@ -117,8 +117,11 @@ class EvaluationStatus(_Model):
         str | None, Field(description="code of who is up; null: nobody who is named, or not known as `activity_chosen_by` says")
     ]
     state: Annotated[
-        Literal["waiting", "moving", "unknown"],
-        Field(description="moving: an attempt seems to be under way; unknown: no pupil is seen, or the evaluation is not heard"),
+        Literal["waiting", "moving", "unknown", "starting"],
+        Field(
+            description="moving: an attempt seems to be under way; unknown: no pupil is seen, or the evaluation is not heard; "
+            "starting: it is not heard yet, and has not had long to begin"
+        ),
     ]
 
 

@@ -5,6 +5,7 @@ Reads no clock: every method is told the time, so that each state can be tested 
 
 import math
 from collections import deque
+from typing import Literal
 
 from models.messages.feedback import ANY
 from models.messages.health import EvaluationHealth, Health, RecorderHealth, Restarts, SupervisorHealth
@@ -12,7 +13,7 @@ from models.messages.motion import JointState, Motion
 from models.messages.trouble import CALIBRATION_CODES, MACHINE_CODES, CalibrationCode
 from models.process import EDGE, EVALUATION, RECORDER, REPLAY, ROUTER, Playback, process_name
 from services.support.machine_troubles import machine_troubles
-from services.tablet.camera_state import SILENT_AFTER_NS, HeardHealth, camera_status, known
+from services.tablet.camera_state import SILENT_AFTER_NS, START_GRACE_NS, HeardHealth, camera_status, known
 from services.tablet.messages import (
     CameraStatus,
     EvaluationStatus,
@@ -222,12 +223,19 @@ class RoomState:
         # What was asked for stays so while the evaluation is started again, but what the pupil does is not known then.
         asked, health = self._evaluation, self._said(EVALUATION, now_ns)
         heard = health.evaluation if health else None
+        unheard: Literal["starting", "unknown"] = "starting" if self._begins(EVALUATION, now_ns) else "unknown"
         return EvaluationStatus(
             activity=asked.activity if asked is not None and asked.activity != ANY else None,
             activity_chosen_by=asked.chosen_by if asked is not None else None,
             pupil=asked.pupil or None if asked is not None else None,
-            state=heard.state if heard is not None else "unknown",
+            state=heard.state if heard is not None else unheard,
         )
+
+    def _begins(self, process: str, now_ns: int) -> bool:
+        """Whether a process has yet to be heard, and may still come."""
+        presence = self._presences.of(process, now_ns)
+        young = now_ns - presence.since_ns < START_GRACE_NS
+        return process not in self._health and presence.alive is not False and young
 
     def _process(self, heard: HeardHealth, now_ns: int) -> ProcessStatus:
         health, age_ns = heard.health, now_ns - heard.arrived_ns

@@ -15,7 +15,7 @@ from models.messages.trouble import Trouble
 from models.skeleton import coco
 from services.tablet import process
 from tests.browser.conftest import Tablets
-from tests.browser.room import CAMERAS, MACHINE, Room, with_scene
+from tests.browser.room import CAMERAS, MACHINE, Room, Scene, with_scene
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -331,3 +331,15 @@ def test_a_teacher_is_told_of_cameras_that_are_exchanged_and_the_technician_whic
     expect(page.locator("#details").get_by_text(exchanged.words)).to_be_visible()
     with_scene(room, troubles=())
     expect(message.get_by_text("Two cameras seem to be exchanged")).to_have_count(0)
+
+
+def test_a_box_that_has_just_been_started_gets_ready_and_gives_no_warning(page: Page) -> None:
+    """ "Attempts are not judged" was the first that a teacher read."""
+    room = Room()
+    room.scene = Scene(evaluating=None)
+    with room:
+        page.goto(room.page)
+        expect(page.locator("[data-judging=starting]")).to_contain_text("Getting ready")
+        expect(page.locator("[data-judging=off]")).to_have_count(0)
+        with_scene(room, evaluating="waiting")
+        expect(page.locator("[data-judging]")).to_have_count(0)

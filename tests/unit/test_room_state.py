@@ -148,6 +148,22 @@ def test_a_camera_that_the_supervisor_gave_up_says_why_instead_of_starting_for_e
     assert judged(state, T0 + S) == ("lost", "failed")
 
 
+def test_an_evaluation_that_was_never_heard_of_is_starting_for_as_long_as_that_may_take() -> None:
+    state = room()
+    assert state.status(T0 + 5 * S, 0).evaluation.state == "starting"
+    assert state.status(T0 + 21 * S, 0).evaluation.state == "unknown"
+    state.set_alive("evaluation", True, T0 + 30 * S)
+    assert state.status(T0 + 31 * S, 0).evaluation.state == "starting"
+    state.set_alive("evaluation", False, T0 + 32 * S)
+    assert state.status(T0 + 33 * S, 0).evaluation.state == "unknown"
+
+
+def test_an_evaluation_that_falls_silent_is_not_taken_for_one_that_starts() -> None:
+    state = room()
+    state.receive_health(Health("evaluation", 1, T0, "ok", (), 0.1, 100.0), T0)
+    assert state.status(T0 + 9 * S, 0).evaluation.state == "unknown"
+
+
 def given_up(process: str) -> Health:
     supervisor = SupervisorHealth("1", T0, (Restarts(process, 5, T0, "was ended by SIGKILL", "ended 6 times within 60 s"),))
     return Health("supervisor", 3, T0, "failed", (Trouble("given_up", f"{process} is given up"),), 0.0, 20.0, supervisor=supervisor)

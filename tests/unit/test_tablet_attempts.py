@@ -232,7 +232,7 @@ def test_what_was_chosen_is_shown_as_soon_as_the_evaluation_says_so(box: Box) ->
 
 
 def test_an_evaluation_that_is_silent_says_nothing_of_the_pupil_and_the_choice_stays(box: Box) -> None:
-    assert box.server.status().evaluation.state == "unknown"
+    assert box.server.status().evaluation.state == "starting"
     assert box.server.status().evaluation.activity_chosen_by is None
     box.hear("long_jump", "moving")
     box.now_ns += 10 * SECOND_NS
@@ -243,7 +243,7 @@ def test_an_evaluation_that_is_silent_says_nothing_of_the_pupil_and_the_choice_s
 def test_no_other_process_speaks_for_the_evaluation(box: Box) -> None:
     box.hear("long_jump", "moving", process="fusion")
     assert box.server.status().evaluation.activity is None
-    assert box.server.status().evaluation.state == "unknown"
+    assert box.server.status().evaluation.state == "starting"
 
 
 def test_who_is_called_is_told_to_the_evaluation_with_the_moment(box: Box) -> None:

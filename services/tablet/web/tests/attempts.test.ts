@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Attempt, AttemptList, AttemptMeasure, Status } from '../src/protocol/messages';
-import { isJudging } from '../src/state/evaluation';
+import { judging } from '../src/state/evaluation';
 import { gauge } from '../src/state/gauge';
 import { ageMin, Lesson } from '../src/state/lesson.svelte';
 
@@ -170,16 +170,26 @@ describe('what was asked of the box', () => {
 });
 
 describe('what judges attempts', () => {
-  const said = (state: Status['processes'][number]['state'], name = 'evaluation'): Pick<Status, 'processes'> => ({
+  type Said = Pick<Status, 'processes' | 'evaluation'>;
+  const unheard = (state: Said['evaluation']['state']): Said => ({
+    processes: [],
+    evaluation: { activity: null, activity_chosen_by: null, pupil: null, state },
+  });
+  const said = (state: Status['processes'][number]['state'], name = 'evaluation'): Said => ({
+    ...unheard('unknown'),
     processes: [{ name, state, reason: '', age_s: 0, cpu_cores: 0, rss_mib: 0, restarts: 0 }],
   });
 
   it('is at work only if the box says so', () => {
-    expect(['ok', 'degraded', 'starting'].map((state) => isJudging(said(state as 'ok')))).toEqual([true, true, true]);
-    const away = ['failed', 'silent', 'gone', 'unknown'].map((state) => isJudging(said(state as 'failed')));
-    expect(away).toEqual([false, false, false, false]);
-    expect(isJudging(said('ok', 'fusion'))).toBe(false);
-    expect(isJudging(null)).toBe(false);
+    expect([said('ok'), said('degraded')].map(judging)).toEqual(['on', 'on']);
+    const away = (['failed', 'silent', 'gone', 'unknown'] as const).map((state) => judging(said(state)));
+    expect(away).toEqual(['off', 'off', 'off', 'off']);
+    expect(judging(said('ok', 'fusion'))).toBe('off');
+  });
+
+  it('is no failure while it gets ready', () => {
+    expect([said('starting'), unheard('starting')].map(judging)).toEqual(['starting', 'starting']);
+    expect(judging(unheard('unknown'))).toBe('off');
   });
 });
 

@@ -288,10 +288,10 @@ export interface components {
             pupil: string | null;
             /**
              * State
-             * @description moving: an attempt seems to be under way; unknown: no pupil is seen, or the evaluation is not heard
+             * @description moving: an attempt seems to be under way; unknown: no pupil is seen, or the evaluation is not heard; starting: it is not heard yet, and has not had long to begin
              * @enum {string}
              */
-            state: "waiting" | "moving" | "unknown";
+            state: "waiting" | "moving" | "unknown" | "starting";
         };
         /**
          * FaultWords

@@ -2,8 +2,11 @@ import type { Status } from '../protocol/messages';
 
 const JUDGES_ATTEMPTS = 'evaluation';
 
-/** What judges attempts is at work, as far as is known. */
-export function isJudging(status: Pick<Status, 'processes'> | null): boolean {
-  const state = status?.processes.find((process) => process.name === JUDGES_ATTEMPTS)?.state;
-  return state === 'ok' || state === 'degraded' || state === 'starting';
+/** Whether what judges attempts is at work, about to be, or neither, as far as is known. */
+export type Judging = 'on' | 'starting' | 'off';
+
+export function judging(status: Pick<Status, 'processes' | 'evaluation'>): Judging {
+  const state = status.processes.find((process) => process.name === JUDGES_ATTEMPTS)?.state;
+  if (state === 'ok' || state === 'degraded') return 'on';
+  return state === 'starting' || status.evaluation.state === 'starting' ? 'starting' : 'off';
 }

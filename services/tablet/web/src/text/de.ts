@@ -121,6 +121,7 @@ export const de: Words = {
       recorded: { title: 'Frühere Versuche stehen im Bericht', words: 'Der nächste Versuch erscheint wieder hier.' },
       lost: { title: 'Frühere Versuche sind nicht mehr bekannt', words: 'Der nächste Versuch erscheint wieder hier.' },
     },
+    starting: { title: 'Macht sich bereit', words: 'Gleich werden Versuche beurteilt.' },
     off: { title: 'Versuche werden nicht beurteilt', words: 'Der Teil der Box, der sie beurteilt, arbeitet nicht.' },
     past: 'Von vor dem Abbruch der Verbindung',
     silence: {

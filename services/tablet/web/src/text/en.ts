@@ -166,6 +166,7 @@ export const en = {
       recorded: { title: 'Earlier attempts are in the report', words: 'The next attempt is shown here again.' },
       lost: { title: 'Earlier attempts are not known any more', words: 'The next attempt is shown here again.' },
     },
+    starting: { title: 'Getting ready', words: 'In a moment attempts are judged.' },
     off: { title: 'Attempts are not judged', words: 'The part of the box that judges them is not at work.' },
     past: 'From before the connection was lost',
     /** What it means that nothing is corrected. */

@@ -124,6 +124,7 @@ export const es: Words = {
       },
       lost: { title: 'Los intentos anteriores ya no se conocen', words: 'El próximo intento volverá a aparecer aquí.' },
     },
+    starting: { title: 'Preparándose', words: 'Enseguida se evalúan los intentos.' },
     off: { title: 'Los intentos no se evalúan', words: 'La parte de la caja que los evalúa no está en marcha.' },
     past: 'De antes de perder la conexión',
     silence: {

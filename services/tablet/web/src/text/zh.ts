@@ -87,6 +87,7 @@ export const zh: Words = {
       recorded: { title: '之前的动作在报告里', words: '下一次动作会重新显示在这里。' },
       lost: { title: '之前的动作已无法得知', words: '下一次动作会重新显示在这里。' },
     },
+    starting: { title: '正在准备', words: '马上就能评价动作。' },
     off: { title: '没有在评价动作', words: '主机中负责评价的部分没有运行。' },
     past: '连接中断之前的内容',
     silence: {
