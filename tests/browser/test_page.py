@@ -343,3 +343,13 @@ def test_a_box_that_has_just_been_started_gets_ready_and_gives_no_warning(page: 
         expect(page.locator("[data-judging=off]")).to_have_count(0)
         with_scene(room, evaluating="waiting")
         expect(page.locator("[data-judging]")).to_have_count(0)
+
+
+def test_a_figure_whose_frame_changes_its_size_is_never_gone(page: Page, room: Room) -> None:
+    """On a busy tablet the stage was white until the next picture was drawn."""
+    shown = open_live(page, room)
+    page.evaluate("window.requestAnimationFrame = () => 1")
+    before = page.evaluate("document.querySelector('canvas').width")
+    page.set_viewport_size({"width": 1000, "height": 600})
+    page.wait_for_function("width => document.querySelector('canvas').width !== width", arg=before)
+    assert shown.coloured_pixels() > 100

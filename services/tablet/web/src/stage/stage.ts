@@ -247,6 +247,8 @@ export class Stage {
     this.camera.updateProjectionMatrix();
     if (!this.orbit.touched) this.orbit.setDistance(this.distanceM());
     this.setPixels();
+    // A canvas that changes its size is empty, and a busy tablet comes late to the next picture.
+    this.renderer.render(this.scene, this.camera);
   }
 
   private distanceM(): number {
