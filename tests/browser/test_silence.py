@@ -12,7 +12,7 @@ from tests.browser.test_page import open_live
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-FINE, UNSURE = "No correction this time", "Nothing that is sure enough to correct"
+FINE, UNSURE = "No correction this time", "Nothing clear to correct this time"
 UNSEEN, REST = "Not seen well enough to judge", "The rest was not seen well enough"
 
 

@@ -122,7 +122,7 @@ WORDS: Final[dict[Language, Words]] = {
         scores="Score of each attempt",
         good="Good",
         next_time="Next time",
-        silence=_silence("No correction this time", "Nothing that is sure enough to correct", "Not seen well enough to judge"),
+        silence=_silence("No correction this time", "Nothing clear to correct this time", "Not seen well enough to judge"),
         rest="The rest was not seen well enough",
         score="Score",
         not_known="not known",
@@ -160,7 +160,7 @@ WORDS: Final[dict[Language, Words]] = {
         scores="每次得分",
         good="做得好",
         next_time="下一次",
-        silence=_silence("这次没有要纠正的", "没有足够把握指出要纠正的地方", "看得不够清楚，无法评价"),
+        silence=_silence("这次没有要纠正的", "这次没有明确要纠正的", "看得不够清楚，无法评价"),
         rest="其余部分看得不够清楚",
         score="得分",
         not_known="未知",
@@ -199,7 +199,7 @@ WORDS: Final[dict[Language, Words]] = {
         good="Gut",
         next_time="Nächstes Mal",
         silence=_silence(
-            "Diesmal keine Korrektur", "Nichts ist sicher genug, um es zu korrigieren", "Nicht gut genug gesehen, um zu urteilen"
+            "Diesmal keine Korrektur", "Diesmal nichts Klares zu korrigieren", "Nicht gut genug gesehen, um zu urteilen"
         ),
         rest="Der Rest war nicht gut genug zu sehen",
         score="Punkte",
@@ -240,7 +240,7 @@ WORDS: Final[dict[Language, Words]] = {
         next_time="La próxima vez",
         silence=_silence(
             "Esta vez, sin correcciones",
-            "Nada lo bastante seguro como para corregirlo",
+            "Esta vez, nada claro que corregir",
             "No se vio lo bastante bien para evaluarlo",
         ),
         rest="El resto no se vio lo bastante bien",

@@ -126,7 +126,7 @@ export const de: Words = {
     past: 'Von vor dem Abbruch der Verbindung',
     silence: {
       fine: 'Diesmal keine Korrektur',
-      unsure: 'Nichts ist sicher genug, um es zu korrigieren',
+      unsure: 'Diesmal nichts Klares zu korrigieren',
       unseen: 'Nicht gut genug gesehen, um zu urteilen',
     },
     rest: 'Der Rest war nicht gut genug zu sehen',

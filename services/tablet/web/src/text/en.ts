@@ -172,7 +172,7 @@ export const en = {
     /** What it means that nothing is corrected. */
     silence: {
       fine: 'No correction this time',
-      unsure: 'Nothing that is sure enough to correct',
+      unsure: 'Nothing clear to correct this time',
       unseen: 'Not seen well enough to judge',
     } satisfies Record<Silence, string>,
     /** The same where something was good, and too little else was seen. */

@@ -129,7 +129,7 @@ export const es: Words = {
     past: 'De antes de perder la conexión',
     silence: {
       fine: 'Esta vez, sin correcciones',
-      unsure: 'Nada lo bastante seguro como para corregirlo',
+      unsure: 'Esta vez, nada claro que corregir',
       unseen: 'No se vio lo bastante bien para evaluarlo',
     },
     rest: 'El resto no se vio lo bastante bien',

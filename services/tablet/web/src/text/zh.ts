@@ -92,7 +92,7 @@ export const zh: Words = {
     past: '连接中断之前的内容',
     silence: {
       fine: '这次没有要纠正的',
-      unsure: '没有足够把握指出要纠正的地方',
+      unsure: '这次没有明确要纠正的',
       unseen: '看得不够清楚，无法评价',
     },
     rest: '其余部分看得不够清楚',
