@@ -163,6 +163,24 @@ def test_the_standard_is_on_top_beside_or_away_and_all_in_a_mirror(tablet: Page,
     assert (np.abs(shown.picture() - pictures["ghost"]).max(axis=-1) > 0.1).sum() > 125
 
 
+def test_the_model_s_tile_names_what_a_touch_does(tablet: Page, room: Room) -> None:
+    see(open_live(tablet, room), room, tried(SHOT, FAULT))
+    choice = tablet.locator("[data-standard]")
+    for name, then in (("Model beside", "beside"), ("Hide model", "off"), ("Model on top", "ghost")):
+        tablet.get_by_role("button", name=name).click()
+        expect(choice).to_have_attribute("data-standard", then)
+
+
+def test_a_slow_replay_is_not_called_live(tablet: Page, room: Room) -> None:
+    shown = open_live(tablet, room)
+    live = tablet.get_by_text("Live", exact=True)
+    expect(live).to_be_visible()
+    see(shown, room, tried(SHOT, FAULT))
+    expect(live).to_have_count(0)
+    tablet.get_by_role("button", name="Back to live").click()
+    expect(live).to_be_visible()
+
+
 def test_a_lost_connection_takes_no_replay_away_and_lets_others_be_seen_that_were(tablet: Page, room: Room) -> None:
     shown = open_live(tablet, room)
     first = see(shown, room, tried(SHOT, FAULT))

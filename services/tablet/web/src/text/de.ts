@@ -163,7 +163,7 @@ export const de: Words = {
     speedLabel: 'Tempo',
     keyframes: ['Start', 'Einsatz', 'Höhepunkt', 'Ende'],
     keyframeLabel: 'Gehe zu',
-    standard: { ghost: 'Vorbild darüber', beside: 'Vorbild daneben', off: 'Kein Vorbild' },
+    standard: { ghost: 'Vorbild darüber', beside: 'Vorbild daneben', off: 'Ohne Vorbild' },
     mirror: 'Spiegeln',
     legend: {
       green: 'Wie es sein soll',

@@ -213,7 +213,7 @@ export const en = {
     speedLabel: 'Speed',
     keyframes: ['Start', 'Effort', 'Peak', 'End'],
     keyframeLabel: 'Go to',
-    standard: { ghost: 'Model on top', beside: 'Model beside', off: 'No model' } satisfies Record<
+    standard: { ghost: 'Model on top', beside: 'Model beside', off: 'Hide model' } satisfies Record<
       StandardShown,
       string
     >,
