@@ -79,7 +79,7 @@ export const es: Words = {
   view: {
     label: 'El alumno en 3D',
     help: 'Gire la vista con las flechas, acérquese y aléjese con más y menos, y vuelva a la primera vista con la tecla R. La barra espaciadora detiene y reanuda una repetición; Escape la termina.',
-    reset: 'Restablecer vista',
+    reset: 'Vista inicial',
     measured: 'Visto',
     unsure: 'No seguro',
   },
@@ -98,7 +98,7 @@ export const es: Words = {
     choose: '¿A quién le toca?',
     nobody: 'Nadie',
     nobodyHint: 'Los intentos se anotan sin código',
-    unknown: 'Desconocido',
+    unknown: 'No se sabe',
     is: (code) => `Alumno/a ${code}`,
     next: 'El siguiente',
     nextIs: (code) => `Siguiente: ${code}`,
