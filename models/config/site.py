@@ -7,6 +7,8 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta
 
+from models.config.endpoint import split_endpoint
+from models.config.host import require_host
 from models.errors import UserError
 
 SITE_VERSION = 2
@@ -234,6 +236,11 @@ def decode_site(data: bytes, origin: Path | str) -> Site:
         site: Site = msgspec.toml.decode(data, type=Site)
     except msgspec.DecodeError as error:
         raise UserError(f"site file {origin}: {error}; {_what_to_do(error)}") from error
+    try:
+        require_host(site.tablet.host, "tablet.host")
+        require_host(split_endpoint(site.bus.endpoint)[0], "bus.endpoint")
+    except UserError as error:
+        raise UserError(f"site file {origin}: {error}") from error
     names = [camera.name for camera in site.cameras]
     doubled = sorted({name for name in names if names.count(name) > 1})
     if doubled:

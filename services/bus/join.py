@@ -4,8 +4,8 @@ import socket
 import time
 from typing import Final
 
+from models.config.endpoint import split_endpoint
 from models.process import Bus
-from services.bus.endpoint import split_endpoint
 
 _ACCEPT_S: Final = 1.0
 _AGAIN_S: Final = 0.1

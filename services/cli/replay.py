@@ -17,7 +17,7 @@ from services.lesson.replay import configuration
 from services.site_file.migration import migrated_text
 from services.site_file.rendering import render
 from services.supervisor.supervise import supervise
-from services.support.listening import listen
+from services.support.listening import NoAddressError, listen
 from services.support.teaching_files import own_folder
 
 _HERE = "127.0.0.1"
@@ -86,6 +86,11 @@ def _own(data: Path, teaching: str) -> str:
 def _require_port(page: TabletConfig) -> None:
     try:
         listen(page.host, page.port).close()
+    except NoAddressError as error:
+        raise UserError(
+            f"the page cannot be shown at {page.host}, which is no address of this machine ({error.strerror}); "
+            "name another with --host"
+        ) from error
     except OSError as error:
         raise UserError(
             f"the page cannot be shown at {page.host} port {page.port}: {error.strerror}; a running KineBox has one already; "

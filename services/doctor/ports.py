@@ -1,14 +1,13 @@
 """The ports that a site needs: free, held by its own running box, or by whom."""
 
 import errno
-import socket
 from dataclasses import dataclass
 
 import psutil
 
+from models.config.endpoint import split_endpoint
 from models.config.site import Site
 from models.errors import UserError
-from services.bus.endpoint import split_endpoint
 from services.doctor.finding import Examined, Fact, Finding, fault_of
 from services.doctor.processes import RunningBox
 from services.supervisor.preflight import require_ports
@@ -104,10 +103,8 @@ def _look_up(what: str, key: str, host: str, number: int, own: RunningBox | None
 def _is_taken(host: str, number: int) -> bool:
     try:
         listen(host, number).close()
-    except socket.gaierror:
-        return False  # A wrong address; `require_ports` says so.
     except OSError as error:
-        return error.errno == errno.EADDRINUSE
+        return error.errno == errno.EADDRINUSE  # Of a wrong address `require_ports` says so.
     return False
 
 

@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from models.camera.rig import Rig
+from models.config.endpoint import split_endpoint
 from models.config.site import Site
 from models.errors import UserError
 from models.process import Check
-from services.bus.endpoint import split_endpoint
 from services.site_file.reading import read_site
-from services.support.listening import listen
+from services.support.listening import NoAddressError, listen
 
 
 def check_everything(site_file: Path, data: Path, checks: Iterable[Check]) -> tuple[Site, Rig]:
@@ -35,8 +35,8 @@ def check_everything(site_file: Path, data: Path, checks: Iterable[Check]) -> tu
 def require_ports(site: Site) -> None:
     """Raise UserError unless the page and the bus can be listened on at the same time, as they will be."""
     bus_host, bus_port = split_endpoint(site.bus.endpoint)
-    bus = _Port(bus_host, bus_port, "port of the bus", "bus.endpoint")
-    with _Port(site.tablet.host, site.tablet.port, "port of the page", "tablet.port").hold():
+    bus = _Port(bus_host, bus_port, "port of the bus", "bus.endpoint", "bus.endpoint")
+    with _Port(site.tablet.host, site.tablet.port, "port of the page", "tablet.port", "tablet.host").hold():
         try:
             bus.hold().close()
         except UserError:
@@ -50,20 +50,22 @@ def require_ports(site: Site) -> None:
 
 
 class _Port(NamedTuple):
-    """A port that the box needs; `key` of the site file is what to change."""
+    """A port that the box needs; `key` of the site file is what to change, `host_key` if it is the address that is wrong."""
 
     host: str
     number: int
     what: str
     key: str
+    host_key: str
 
     def hold(self) -> socket.socket:
         """Listen on it; UserError if that cannot be."""
         try:
             return listen(self.host, self.number)
-        except socket.gaierror as error:
+        except NoAddressError as error:
             raise UserError(
-                f"{self.what}: '{self.host}' is no address of this machine ({error.strerror}); change {self.key} in the site file"
+                f"{self.what}: '{self.host}' is no address of this machine ({error.strerror}); "
+                f"change {self.host_key} in the site file"
             ) from error
         except OSError as error:
             raise UserError(

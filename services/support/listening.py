@@ -1,6 +1,11 @@
 """Taking hold of a port."""
 
+import errno
 import socket
+
+
+class NoAddressError(OSError):
+    """The host is no address of this machine, so that no other port would help."""
 
 
 def listen(host: str, port: int) -> socket.socket:
@@ -10,16 +15,23 @@ def listen(host: str, port: int) -> socket.socket:
     such sockets be bound to one port for as long as neither does.
 
     Raises:
-        socket.gaierror: the host is none.
-        OSError: the port is taken or forbidden, or the address is none of this machine's.
+        NoAddressError: the host is none, or none of this machine's.
+        OSError: the port is taken or forbidden.
     """
-    family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+    except UnicodeError as error:
+        raise NoAddressError(errno.EINVAL, "each part of a name has 1 to 63 characters") from error
+    except socket.gaierror as error:
+        raise NoAddressError(error.errno, error.strerror) from error
     listener = socket.socket(family, kind, protocol)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind(address)
         listener.listen()
-    except OSError:
+    except OSError as error:
         listener.close()
+        if error.errno == errno.EADDRNOTAVAIL:
+            raise NoAddressError(error.errno, error.strerror) from error
         raise
     return listener

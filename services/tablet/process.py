@@ -68,7 +68,7 @@ def listen(config: TabletConfig) -> socket.socket:
     where = f"tablet: cannot listen on {config.host} port {config.port}"
     try:
         return listening.listen(config.host, config.port)
-    except socket.gaierror as error:
+    except listening.NoAddressError as error:
         raise UserError(f"{where}: {error.strerror}; correct 'host' under [tablet] in the site file") from error
     except OSError as error:
         remedy = "end the program that uses it, or set another 'port' under [tablet] in the site file"

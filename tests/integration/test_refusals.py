@@ -135,7 +135,15 @@ FAULTS: dict[str, tuple[Callable[[House], object], str]] = {
     ),
     "the page's address is none": (
         lambda house: replace_text(house.site, 'host = "127.0.0.1"', 'host = "192.0.2.99"'),
-        r"port of the page: .*192\.0\.2\.99 .*change tablet\.port",
+        r"port of the page: .*192\.0\.2\.99.* is no address of this machine .*change tablet\.host",
+    ),
+    "the page's address can be none": (
+        lambda house: replace_text(house.site, 'host = "127.0.0.1"', 'host = "192.168..5"'),
+        r"site file .*site\.toml: tablet\.host is no name and no address of a machine: .*; correct it",
+    ),
+    "the bus's address can be none": (
+        lambda house: replace_text(house.site, "tcp/127.0.0.1:", "tcp/.:"),
+        r"site file .*site\.toml: bus\.endpoint is no name and no address of a machine: .*; correct it",
     ),
     "the bus has no port": (
         lambda house: replace_text(house.site, f"tcp/127.0.0.1:{house.bus_port}", "tcp/127.0.0.1:99999"),

@@ -81,6 +81,15 @@ def test_a_lesson_in_which_nothing_was_recorded_is_refused(tmp_path: Path, parts
     assert "kinebox lessons delete empty" in refused.stderr
 
 
+@pytest.mark.parametrize("host", ["192.168..5", "nosuch.invalid", "192.0.2.99"])
+def test_a_page_s_address_that_is_none_is_not_blamed_on_its_port(tmp_path: Path, host: str) -> None:
+    file, _ = write_altered(tmp_path)
+    refused = run("-m", "services.cli.main", "replay", str(file), "--data", str(tmp_path), "--host", host)
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert f"the page cannot be shown at {host}, which is no address of this machine (" in refused.stderr
+    assert refused.stderr.endswith("; name another with --host\n")
+
+
 def test_a_lesson_that_ended_before_its_first_motion_is_not_said_to_be_equal(tmp_path: Path) -> None:
     log = [entry for entry in entries(GYM.events(), GYM.rig) if entry.kind != "motion"][:3]
     writer = LessonWriter.create(tmp_path, "short", gym_header(GYM))

@@ -246,7 +246,7 @@ def test_a_port_that_is_taken_is_named_with_what_to_do() -> None:
 
 
 def test_an_address_that_is_not_this_machines_is_named() -> None:
-    with pytest.raises(UserError, match=r"cannot listen on 203\.0\.113\.9 port 8080"):
+    with pytest.raises(UserError, match=r"cannot listen on 203\.0\.113\.9 port 8080: .*; correct 'host' under"):
         process.listen(TabletConfig(host="203.0.113.9", port=8080))
 
 

@@ -9,11 +9,13 @@ from services.site_file.rendering import render
 
 # All that TOML can hold: halves of surrogate pairs are no characters.
 TEXTS = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=80)
+PATHS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1, max_size=60)
+HOSTS = st.sampled_from(["0.0.0.0", "::1", "fe80::1%eth0", "gym-box.local", "turnhalle-süd", "体育馆"])  # noqa: S104 - as site files have it
 CAMERAS = st.builds(
     CameraConfig,
     name=st.just("a"),
     kind=st.just("video"),
-    path=TEXTS,
+    path=PATHS,
     rate_hz=st.floats(1e-9, 240),
     shutter_delay_ms=st.floats(-1000, 1000),
 )
@@ -25,7 +27,7 @@ SITES = st.builds(
         cameras=[first, msgspec.structs.replace(second, name="b")],
         tablet=TabletConfig(host=host),
     ),
-    TEXTS, TEXTS, CAMERAS, CAMERAS, TEXTS,
+    TEXTS, PATHS, CAMERAS, CAMERAS, HOSTS,
 )  # fmt: skip
 
 

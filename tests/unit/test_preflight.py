@@ -34,6 +34,14 @@ def test_one_port_for_page_and_bus_is_refused_with_both_keys(page_host: str) -> 
         require_ports(site(page_host, port, port))
 
 
+@pytest.mark.parametrize("host", ["nosuch.invalid", "192.0.2.99", "192.168..5"])
+def test_a_page_whose_address_is_none_is_not_blamed_on_its_port(host: str) -> None:
+    with pytest.raises(
+        UserError, match=rf"^port of the page: '{host}' is no address of this machine \(.*\); change tablet\.host in"
+    ):
+        require_ports(site(host, free_port(), free_port()))
+
+
 def test_a_bus_whose_port_somebody_else_has_is_not_blamed_on_the_page() -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]

@@ -33,6 +33,30 @@ def test_the_remedy_fits_the_fault(text: str, remedy: str) -> None:
     assert "\n" not in str(error.value)
 
 
+NO_HOSTS = ["", ".", "192.168..5", "a" * 64, "a." * 150, "a\\u0000b", "ü" * 60]
+"""As TOML writes them."""
+
+
+@pytest.mark.parametrize("host", NO_HOSTS)
+def test_a_page_s_host_that_nothing_could_be_looked_up_by_is_named_without_a_network(host: str) -> None:
+    with pytest.raises(
+        UserError, match=r"^site file site\.toml: tablet\.host is no name and no address of a machine: .*; correct it$"
+    ):
+        decode_site(f'{GOOD}[tablet]\nhost = "{host}"\n'.encode(), "site.toml")
+
+
+@pytest.mark.parametrize("host", [host for host in NO_HOSTS if host])
+def test_so_is_the_bus_s(host: str) -> None:
+    with pytest.raises(UserError, match=r"^site file site\.toml: bus\.endpoint is no name and no address of a machine: "):
+        decode_site(f'{GOOD}[bus]\nendpoint = "tcp/{host}:7447"\n'.encode(), "site.toml")
+
+
+@pytest.mark.parametrize("host", ["::1", "fe80::1%eth0", "0.0.0.0", "gym-box.local", "gym-box.local.", "turnhalle-süd"])  # noqa: S104
+def test_a_host_that_may_be_one_is_left_to_the_network(host: str) -> None:
+    text = f'{GOOD}[tablet]\nhost = "{host}"\n[bus]\nendpoint = "tcp/[{host}]:7447"\n'
+    assert decode_site(text.encode(), "site.toml").tablet.host == host
+
+
 DIGITS = "9" * 5000
 GOOD = 'version = 2\nname = "Gym"\ncalibration = "rig.toml"\n' + "".join(
     f'[[cameras]]\nname = "{name}"\nkind = "video"\npath = "{name}.avi"\n' for name in "ab"

@@ -42,6 +42,12 @@ CONFIGURATION: dict[str, Trouble] = {
         broken(lambda house: replace_text(house.site, 'host = "127.0.0.1"', 'host = "192.0.2.99"')),
         "ports",
         r"port of the page: .*192\.0\.2\.99",
-        r"change tablet\.port",
+        r"change tablet\.host",
+    ),
+    "the page's address can be none": Trouble(
+        broken(lambda house: replace_text(house.site, 'host = "127.0.0.1"', 'host = "192.168..5"')),
+        "site file",
+        r"tablet\.host is no name and no address of a machine",
+        "correct it",
     ),
 }
