@@ -8,7 +8,7 @@ from msgspec import UNSET
 
 from edge.simulation.lesson.cameras import rig_of
 from edge.simulation.lesson.files import SITE_NAME
-from edge.simulation.lesson.plan import Plan, decode_plan
+from edge.simulation.lesson.plan import Plan, decode_plan, plan_text
 from edge.simulation.lesson.plan_check import require_sound
 from edge.simulation.lesson.presets import PRESETS
 from edge.simulation.rendering.render_lesson import folder_of, render_lesson
@@ -44,7 +44,7 @@ def find_plan(name: str) -> Plan:
     if name in PRESETS and not path.is_file():
         return PRESETS[name].make()
     try:
-        text = path.read_bytes()
+        text = plan_text(path)
     except FileNotFoundError as error:
         raise UserError(
             f"there is no lesson plan '{name}': no file of that name, and those that come with KineBox are {', '.join(PRESETS)}"

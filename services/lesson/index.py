@@ -11,6 +11,7 @@ import structlog
 from msgspec import Meta
 
 from models.errors import UserError
+from models.regular_file import require_regular
 from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import LessonWriter, is_being_written
 from services.lesson.lesson_reader import NewerLessonError, open_lesson, read_header
@@ -235,6 +236,7 @@ def _read(path: Path, lesson: str, size: int, changed_ns: int) -> LessonRow:
     title, started_s, seconds, gaps, segments, state, problem = "", changed_ns * 1e-9, 0.0, 0, 0, "finished", ""
     try:
         if path.name.endswith(PART_SUFFIX):
+            require_regular(path.stat())
             with path.open("rb") as file:
                 header = read_header(path, file)
                 title, started_s = header.title, header.started_s

@@ -18,6 +18,7 @@ from mcap.records import Header, Metadata
 
 from models.errors import UserError
 from models.messages.lesson import Entry
+from models.regular_file import require_regular
 from services.lesson import lesson_header
 from services.lesson.layout import MARK, PART_SUFFIX, PROFILE, SUFFIX, Mark, entry
 from services.lesson.lesson_header import HeaderError, LessonHeader, NewerFormatError
@@ -168,6 +169,7 @@ def open_lesson(path: Path) -> Lesson:
     if path.name.endswith(PART_SUFFIX):
         raise UserError(f"lesson {path} is not finished; end its recording, or start KineBox, which recovers what a crash left")
     try:
+        require_regular(path.stat())
         file = path.open("rb")
     except FileNotFoundError as error:
         raise UserError(f"lesson {path} does not exist; 'kinebox lessons' lists what there is") from error

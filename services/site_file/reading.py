@@ -6,6 +6,7 @@ from pathlib import Path
 from models.camera.rig import Rig, decode_rig
 from models.config.site import Site, decode_site
 from models.errors import UserError
+from models.regular_file import require_text
 
 
 def read_site(path: Path) -> tuple[Site, Rig]:
@@ -39,6 +40,7 @@ def read_file(path: Path, what: str) -> bytes:
     The mark with which Windows' editors begin a text in UTF-8 is left out.
     """
     try:
+        require_text(path.stat())
         return path.read_bytes().removeprefix(codecs.BOM_UTF8)
     except FileNotFoundError as error:
         raise UserError(f"{what} {path} does not exist; correct its path") from error

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Final
 
 from models.errors import UserError
+from models.regular_file import require_text
 from models.teaching.standard import Standard, decode, encode
 from services.support.new_file import write_new, write_over
 from services.support.sync import sync_folder
@@ -125,7 +126,7 @@ class OwnStandards:
     def is_counting(self, action: str, kept: Kept) -> bool:
         """Whether one that counted before counts again: whether it is the same, whatever its number; not if it cannot be read."""
         try:
-            return self.file(action).read_bytes() == kept.file.read_bytes()
+            return _content(self.file(action)) == _content(kept.file)
         except OSError:
             return False
 
@@ -152,7 +153,7 @@ class OwnStandards:
             if chosen.read().action != action:
                 raise UserError(f"standard {chosen.file} is of another action; move it away, and name another version")
             with self._kept_before(action):
-                write_over(self.file(action), chosen.file.read_bytes())
+                write_over(self.file(action), _content(chosen.file))
             sync_folder(self.folder)
 
     def bring_back_shipped(self, action: str) -> None:
@@ -195,14 +196,14 @@ class OwnStandards:
         file = self.file(action)
         if not file.exists():
             return _Copy()
-        data, number = file.read_bytes(), None
+        data, number = _content(file), None
         try:
             standard = _standard(data, file)
         except UserError:
             copy = self._free(data, f"{action}-{_UNREADABLE}")
         else:
             copy = self._version(action, standard.version)
-            if copy.exists() and copy.read_bytes() != data:
+            if copy.exists() and _content(copy) != data:
                 # A file that somebody brought has the number of another one.
                 standard = replace(standard, version=self._next(action))
                 copy, data = self._version(action, standard.version), encode(standard)
@@ -231,7 +232,7 @@ class OwnStandards:
         """A name that no file has; None if one has this content."""
         number = 1
         while (file := self._versions / f"{name}-{number}{STANDARD_SUFFIX}").exists():
-            if file.read_bytes() == data:
+            if _content(file) == data:
                 return None
             number += 1
         return file
@@ -296,9 +297,14 @@ def _files(folder: Path) -> list[Path]:
         raise UserError(f"{folder} cannot be read: {error.strerror}; correct its permissions") from error
 
 
+def _content(file: Path) -> bytes:
+    require_text(file.stat())
+    return file.read_bytes()
+
+
 def _read(file: Path) -> bytes:
     try:
-        return file.read_bytes()
+        return _content(file)
     except OSError as error:
         raise UserError(f"{file} cannot be read: {error.strerror}; correct its permissions, or remove it") from error
 

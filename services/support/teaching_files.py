@@ -8,6 +8,7 @@ from typing import Final, TypeVar
 import models.teaching
 from models.config.site import SCHOOL_FOLDER
 from models.errors import UserError
+from models.regular_file import require_text
 from models.teaching import standard
 from models.teaching.schema import Teaching, Vocabulary, decode_teaching
 from models.teaching.standard import Standard
@@ -79,6 +80,8 @@ def _load(own: Path | None, kind: str, suffix: str, read: Callable[[bytes, str],
     contents = {}
     for name, file in sorted(files.items()):
         try:
+            if isinstance(file, Path):
+                require_text(file.stat())
             data = file.read_bytes()
         except OSError as error:
             raise UserError(f"{file} cannot be read: {error.strerror}; correct its permissions, or remove it") from error

@@ -141,7 +141,9 @@ def test_a_damaged_file_of_an_impossible_date_is_listed(tmp_path: Path, monkeypa
 
     def stat(path: Path, *, follow_symlinks: bool = True) -> os.stat_result | SimpleNamespace:
         status = real(path, follow_symlinks=follow_symlinks)
-        return SimpleNamespace(st_size=7, st_mtime_ns=seconds * SECOND_NS) if path.name == "a.mcap" else status
+        return (
+            SimpleNamespace(st_mode=status.st_mode, st_size=7, st_mtime_ns=seconds * SECOND_NS) if path.name == "a.mcap" else status
+        )
 
     monkeypatch.setattr(Path, "stat", stat)
     (row,) = LessonIndex(tmp_path).lessons()

@@ -19,6 +19,7 @@ from models.config.site import FaultConfig, Name
 from models.errors import UserError
 from models.motions.motion import Handed
 from models.motions.performance import AMPLITUDE, SEVERITY, TEMPO, Performance
+from models.regular_file import require_text
 
 PLAN_VERSION = 1
 MAX_LENGTH_S = 600.0
@@ -192,11 +193,17 @@ def decode_plan(data: bytes, origin: Path | str) -> Plan:
         raise UserError(f"lesson plan {origin}: {error}; it is no TOML there, correct it") from error
 
 
+def plan_text(path: Path) -> bytes:
+    """What is in a plan's file; OSError if it cannot be read, or is no file that a plan could be in."""
+    require_text(path.stat())
+    return path.read_bytes()
+
+
 def read_plan(folder: Path, camera: str) -> Plan:
     """The plan of a rendered lesson; `camera` is for the message. Raises UserError if there is none that can be read."""
     path = folder / PLAN_NAME
     try:
-        return decode_plan(path.read_bytes(), path)
+        return decode_plan(plan_text(path), path)
     except FileNotFoundError as error:
         raise UserError(
             f"camera '{camera}': {folder} is no rendered lesson; correct `path` in the site file, or render it with "

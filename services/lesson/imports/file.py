@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Final
 
 from models.errors import UserError
+from models.regular_file import require_regular
 from services.evaluation.track import Track
 from services.lesson.imports import bvh, c3d, trc
 from services.lesson.readable_names import readable
@@ -30,7 +31,9 @@ def read_motion(file: Path, unit: str | None = None) -> Track:
     if unit is not None and decode is not bvh.decode:
         raise UserError(f"--unit is for BVH files, which say none; {name} says its own; leave --unit out")
     try:
-        if file.stat().st_size > MOST_BYTES:
+        found = file.stat()
+        require_regular(found)
+        if found.st_size > MOST_BYTES:
             raise UserError(f"{name} is larger than {MOST_BYTES / 1e6:.0f} MB; export the attempt alone")
         data = file.read_bytes()
     except FileNotFoundError as error:
