@@ -1,6 +1,7 @@
 """Schema of the site file. Unknown keys are refused, every field has a description and bounds."""
 
 import shlex
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -9,6 +10,7 @@ from msgspec import Meta
 
 from models.config.endpoint import split_endpoint
 from models.config.host import require_host
+from models.config.path import require_path
 from models.errors import UserError
 
 SITE_VERSION = 2
@@ -237,6 +239,8 @@ def decode_site(data: bytes, origin: Path | str) -> Site:
     except msgspec.DecodeError as error:
         raise UserError(f"site file {origin}: {error}; {_what_to_do(error)}") from error
     try:
+        for key, path in _paths(site):
+            require_path(path, key)
         require_host(site.tablet.host, "tablet.host")
         require_host(split_endpoint(site.bus.endpoint)[0], "bus.endpoint")
     except UserError as error:
@@ -249,6 +253,15 @@ def decode_site(data: bytes, origin: Path | str) -> Site:
         if fault.camera not in names:
             raise UserError(f"site file {origin}: a fault is for camera '{fault.camera}', which is not one of {', '.join(names)}")
     return site
+
+
+def _paths(site: Site) -> Iterator[tuple[str, str]]:
+    """Every path that a site file names, after its key."""
+    yield "calibration", site.calibration
+    for camera in site.cameras:
+        yield f"camera '{camera.name}': path", camera.path
+    yield "evaluation.teaching", site.evaluation.teaching
+    yield "lessons.folder", site.lessons.folder
 
 
 def schema() -> dict[str, Any]:

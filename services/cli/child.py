@@ -10,10 +10,9 @@ from pathlib import Path
 
 import msgspec
 
-from models.errors import UserError
 from models.process import Playback
 from services.cli.process import ProcessOrder, run_process
-from services.cli.user_error import exit_with_line
+from services.cli.user_error import told_in_one_line
 from services.logs import of_process
 from services.supervisor.lifeline import end_with_parent
 
@@ -43,10 +42,8 @@ def main() -> None:
     )
     of_process.configure(order.name)
     of_process.log_what_ends_us()
-    try:
+    with told_in_one_line():
         run_process(order)
-    except UserError as error:
-        exit_with_line(error)
 
 
 if __name__ == "__main__":

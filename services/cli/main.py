@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated
 
 from models.errors import UserError
-from services.cli.user_error import exit_with_line
+from services.cli.user_error import exit_with_line, told_in_one_line
 
 try:
     import typer
@@ -39,9 +39,8 @@ standard_commands.add_to(app)
 def main() -> None:
     """Entry point of `kinebox`: an error for people is one line and exit code 2, any other keeps its traceback."""
     try:
-        app()
-    except UserError as error:
-        exit_with_line(error)
+        with told_in_one_line():
+            app()
     except KeyboardInterrupt:
         sys.exit(130)
 

@@ -91,3 +91,24 @@ def test_so_is_one_in_a_calibration(digits: int) -> None:
     )
     with pytest.raises(UserError, match=r"^calibration rig\.toml: "):
         decode_rig(f"version = 1\n{camera}".encode(), "rig.toml")
+
+
+PATHS = {
+    "calibration": GOOD.replace("rig.toml", "PATH"),
+    "camera 'b': path": GOOD.replace("b.avi", "PATH"),
+    "lessons.folder": f'{GOOD}[lessons]\nfolder = "PATH"\n',
+    "evaluation.teaching": f'{GOOD}[evaluation]\nteaching = "PATH"\n',
+}
+
+
+@pytest.mark.parametrize("key", PATHS)
+@pytest.mark.parametrize("path", ["\\u0000", "rigs/a\\u0000b.toml", "ü" * 128, "d/" * 3000], ids=["NUL", "in it", "name", "whole"])
+def test_a_path_that_no_disk_could_have_is_named_by_its_key(key: str, path: str) -> None:
+    with pytest.raises(UserError, match=rf"^site file site\.toml: {key} is no path: ") as error:
+        decode_site(PATHS[key].replace("PATH", path).encode(), "site.toml")
+    assert len(str(error.value)) < 200
+
+
+@pytest.mark.parametrize("key", PATHS)
+def test_a_path_in_any_script_may_be_one(key: str) -> None:
+    decode_site(PATHS[key].replace("PATH", "/srv/校准/../ü/" + "d" * 255).encode(), "site.toml")
