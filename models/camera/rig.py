@@ -9,6 +9,7 @@ import numpy as np
 
 from models.arrays import Float
 from models.camera.pinhole import Camera
+from models.camera.plausible import require_plausible
 from models.errors import UserError
 
 RIG_VERSION = 1
@@ -91,7 +92,8 @@ def decode_rig(data: bytes, origin: str) -> Rig:
         origin: the file's name, for error messages.
 
     Raises:
-        UserError: not TOML, a key unknown or missing, a value of the wrong kind, or a rotation that is none.
+        UserError: not TOML, a key unknown or missing, a value of the wrong kind, a rotation that is none, or a lens that no camera
+            has.
     """
     try:
         record = msgspec.toml.decode(data, type=_RigRecord)
@@ -122,7 +124,7 @@ def _camera(record: _CameraRecord) -> Camera:
         except ValueError as error:
             raise UserError(f"camera '{record.name}': {field} is not a regular array of numbers") from error
 
-    return Camera(
+    camera = Camera(
         name=record.name,
         size_px=record.size_px,
         matrix_px=array("matrix_px", record.matrix_px),
@@ -131,6 +133,8 @@ def _camera(record: _CameraRecord) -> Camera:
         translation_m=array("translation_m", record.translation_m),
         shift_px=array("shift_px", record.shift_px),
     )
+    require_plausible(camera)
+    return camera
 
 
 def encode_rig(rig: Rig, source: str) -> bytes:

@@ -12,8 +12,6 @@ from models.arrays import Float
 from models.camera.pinhole import Camera
 from models.camera.rig import MIN_BASELINE_M, Rig, decode_rig, encode_rig
 
-numbers = st.floats(-1e4, 1e4)
-
 
 def rotation(vector: Float) -> Float:
     """The rotation of a quaternion with real part 1 (Cayley)."""
@@ -27,7 +25,7 @@ cameras = st.builds(
     lambda name, size, focal, centre, distortion, vector, translation, shift: Camera(
         name,
         size,
-        np.array(((focal, 0, centre[0]), (0, focal, centre[1]), (0, 0, 1))),
+        np.array(((focal * max(size), 0, centre[0] * size[0]), (0, focal * max(size), centre[1] * size[1]), (0, 0, 1))),
         distortion,
         rotation(vector),
         translation,
@@ -35,8 +33,8 @@ cameras = st.builds(
     ),
     st.text(min_size=1, max_size=12).filter(lambda name: name.isprintable()),
     st.tuples(st.integers(16, 8000), st.integers(16, 8000)),
-    st.floats(1, 1e4),
-    arrays(np.float64, 2, elements=numbers),
+    st.floats(1.5, 50),
+    arrays(np.float64, 2, elements=st.floats(-0.5, 1.5)),
     arrays(np.float64, 5, elements=st.floats(-1, 1)),
     arrays(np.float64, 3, elements=st.floats(-2, 2)),
     arrays(np.float64, 3, elements=st.floats(-900, 900)),
