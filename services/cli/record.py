@@ -17,6 +17,8 @@ from services.support.signals import stop_on_signals
 
 _ROUND_S = 0.25
 _SILENT_S = 5.0
+GONE_AFTER_S = 180.0
+"""Whoever restarts the recorder finds out within two minutes that it hangs as it starts, and waits for up to half a one."""
 
 
 def record(site: Site, data: Path, title: str, seconds: float | None) -> None:
@@ -29,7 +31,7 @@ def record(site: Site, data: Path, title: str, seconds: float | None) -> None:
         seconds: how long it shall be; None until it is ended.
 
     Raises:
-        UserError: no box or recorder is there, it cannot record, or the lesson ended by itself.
+        UserError: no box or recorder is there, it cannot record, the lesson ended by itself, or nothing is heard of it any more.
     """
     require_title(title)
     stop = stop_on_signals()
@@ -69,7 +71,11 @@ def end(site: Site, data: Path) -> None:
 
 
 def _watch(remote: Remote, lesson: str, seconds: float | None, stop: Event) -> RecorderHealth | None:
-    """Show how the lesson goes. None if it shall be ended now; its last known state if it was ended by others."""
+    """Show how the lesson goes. None if it shall be ended now; its last known state if it was ended by others.
+
+    Raises:
+        UserError: the lesson ended by itself, or nobody is left to record it.
+    """
     last: RecorderHealth | None = None
     heard_s = time.monotonic()
     with ProgressLine() as progress:
@@ -86,6 +92,11 @@ def _watch(remote: Remote, lesson: str, seconds: float | None, stop: Event) -> R
             if last is not None and seconds is not None and last.recorded_s >= seconds:
                 return None
             reason = remote.newest.reason if remote.newest is not None else ""
+            if now_s - heard_s > GONE_AFTER_S:
+                raise UserError(
+                    f"nothing was heard of the recorder for {GONE_AFTER_S:g} s; 'kinebox doctor' says what is wrong. What lesson "
+                    f"{lesson} has is kept, and finished when the box is started again with 'kinebox run'"
+                )
             if now_s - heard_s > _SILENT_S:
                 reason = "nothing is heard of the recorder"
             progress.show(_line(last, reason))
