@@ -19,6 +19,7 @@ from services.site_file.rendering import render
 from services.supervisor.supervise import supervise
 from services.support.listening import NoAddressError, listen
 from services.support.teaching_files import own_folder
+from services.tablet.page import PAGE, require_page
 
 _HERE = "127.0.0.1"
 _CALIBRATION = "rig.toml"
@@ -35,7 +36,7 @@ def play(file: Path, data: Path, page: TabletConfig, speed: float, *, loop: bool
         loop: begin again at the end.
 
     Raises:
-        UserError: the file is no lesson that can be replayed, or the page's port is taken; nothing was started.
+        UserError: the file is no lesson that can be replayed, the page's port is taken, or there is no page; nothing was started.
     """
     with open_lesson(file) as lesson:
         header = lesson.header
@@ -47,6 +48,7 @@ def play(file: Path, data: Path, page: TabletConfig, speed: float, *, loop: bool
         lesson.require_entries()
         lesson.summary()
     _require_port(page)
+    require_page(PAGE)
     playback = Playback(str(file.resolve()), header.title, header.started_ns + header.wall_minus_monotonic_ns, speed, loop)
     with tempfile.TemporaryDirectory(prefix="kinebox-replay-") as folder:
         site_file = Path(folder) / "site.toml"

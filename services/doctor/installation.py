@@ -11,14 +11,13 @@ from pathlib import Path
 from packaging.specifiers import SpecifierSet
 
 from models.make_command import make_command
-from services import tablet
 from services.doctor.apart import REMEDY, import_finding, import_problems, run_module
 from services.doctor.finding import Examined, Fact, Finding
 from services.support.environment import process_environment
 from services.support.requirements import DISTRIBUTION, installed_version, required_packages
 from services.support.version import kinebox_version
+from services.tablet.page import PAGE
 
-PAGE = Path(tablet.__file__).parent / "web" / "dist"
 _ASSET = re.compile(r'(?:src|href)="/(assets/[^"]+)"')
 
 

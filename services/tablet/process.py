@@ -5,7 +5,6 @@ import socket
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from pathlib import Path
 
 import structlog
 import uvicorn
@@ -23,11 +22,10 @@ from models.process import Bus, Delivery, ProcessContext, Subscription
 from services.support import listening
 from services.support.health import PERIOD_S, HealthReporter
 from services.support.teaching_files import load_teachings, own_folder
+from services.tablet.page import PAGE, require_page
 from services.tablet.room_state import RoomState
 from services.tablet.server import TabletServer, Told, create_app
 from services.tablet.teaching_words import words_of
-
-PAGE = Path(__file__).parent / "web" / "dist"
 
 _RECEIVE_TIMEOUT_S = 0.1
 _SHUTDOWN_S = 1
@@ -45,8 +43,7 @@ def main(context: ProcessContext) -> None:
         UserError: the page is not built, what is taught cannot be read, or the port cannot be listened on.
         Exception: what one of the server's parts failed with; without it the page would show a past for ever.
     """
-    if not (PAGE / "index.html").is_file():
-        raise UserError("tablet: the page is not built (services/tablet/web/dist is missing); run 'make web'")
+    require_page(PAGE)
     site = context.site
     teaching = words_of(load_teachings(own_folder(context.data, site.evaluation.teaching), None), site.evaluation.language)
     listener = listen(site.tablet)

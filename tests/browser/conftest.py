@@ -12,7 +12,7 @@ from typing import Any, Protocol
 import pytest
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
-from services.tablet import process
+from services.tablet.page import PAGE
 from tests.browser.room import Room
 
 _ARGUMENTS = (
@@ -56,7 +56,7 @@ def _missing(reason: str) -> None:
 # Not for the session: while Playwright runs, this thread has an event loop that other tests would trip over.
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
-    if not (process.PAGE / "index.html").is_file():
+    if not (PAGE / "index.html").is_file():
         _missing("the page is not built: run 'make web'")
     path = _chromium()
     with sync_playwright() as playwright:

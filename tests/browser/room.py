@@ -32,6 +32,7 @@ from models.skeleton import coco
 from services.bus.memory import MemoryBus, MemoryRouter
 from services.evaluation.memory import Memory
 from services.tablet import process
+from services.tablet.page import PAGE
 from tests.browser.attempts import ending
 from tests.integration.waiting import until
 from tests.synthetic.gym import ring_rig
@@ -318,7 +319,7 @@ def tablet_context(bus: Bus, port: int, stop: threading.Event) -> ProcessContext
         camera=None,
         site=_site(port),
         rig=_rig(),
-        data=process.PAGE,
+        data=PAGE,
         start_ns=time.monotonic_ns(),
         bus=bus,
         stop=stop,

@@ -13,13 +13,13 @@ from models.arrays import Float
 from models.messages.motion import JointState
 from models.messages.trouble import Trouble
 from models.skeleton import coco
-from services.tablet import process
+from services.tablet.page import PAGE
 from tests.browser.conftest import Tablets
 from tests.browser.room import CAMERAS, MACHINE, Room, Scene, with_scene
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-AXE = process.PAGE.parent / "node_modules" / "axe-core" / "axe.min.js"
+AXE = PAGE.parent / "node_modules" / "axe-core" / "axe.min.js"
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,7 @@ tablet = {tablet}
 recorder = tests.integration.fake_parts:recorder
 [kinebox.checks]
 edge = {check}
+tablet = tests.integration.fake_parts:nothing_to_check
 """
 
 CAMERA = """

@@ -26,8 +26,8 @@ from services.lesson.lesson_reader import open_lesson
 from services.lesson.pupils import attempts_told
 from services.site_file.rendering import render
 from services.support.health import ResourceMeter
-from services.tablet import process
 from services.tablet.attempts import SINCE_THE_BOX
+from services.tablet.page import PAGE
 from tests.integration.fusion_room import RIG, SITE
 from tests.integration.page_server import answers, hears, listed, next_list, numbers, page_server
 from tests.integration.test_recorder_process import ROOT, Box, ZenohRoom
@@ -134,7 +134,7 @@ def test_fifty_long_attempts_are_told_again_over_real_sockets_and_all_at_once_to
             assert first["earlier"] == "listed"
 
 
-@pytest.mark.skipif(not (process.PAGE / "index.html").is_file(), reason="the page is not built: run 'make web'")
+@pytest.mark.skipif(not (PAGE / "index.html").is_file(), reason="the page is not built: run 'make web'")
 def test_kill_9_of_the_page_s_server_costs_nothing_of_the_list(tmp_path: Path) -> None:
     told = [feedback(time.monotonic_ns() - (10 - number) * 10**9) for number in range(5)]
     with remembering(tmp_path, told) as room:

@@ -6,7 +6,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from services.doctor.finding import Examined
-from services.doctor.installation import PAGE, Installation, gather_installation
+from services.doctor.installation import Installation, gather_installation
+from services.tablet.page import PAGE
 from tests.installed import DATA
 from tests.integration.doctor_troubles.trouble import Stage, Trouble, examined
 from tests.integration.house import House, build_house
