@@ -51,10 +51,10 @@ class CameraConfig(Section, frozen=True):
     ] = 0.0
 
     def __post_init__(self) -> None:
-        if self.kind == "simulated" and (self.rate_hz, self.shutter_delay_ms) != (30.0, 0.0):
-            raise ValueError(
-                "a simulated camera has its rate and delay from its lesson; leave out `rate_hz` and `shutter_delay_ms`"
-            )
+        if self.kind == "simulated":
+            given = [f"`{key}`" for key, default in (("rate_hz", 30.0), ("shutter_delay_ms", 0.0)) if getattr(self, key) != default]
+            if given:
+                raise ValueError(f"a simulated camera has its rate and delay from its lesson; leave out {' and '.join(given)}")
 
 
 class BusConfig(Section, frozen=True):

@@ -71,7 +71,7 @@ def run(site: SiteFile, data: DataFolder = Path("build")) -> None:
 
 @app.command()
 def process(
-    name: Annotated[str, typer.Argument(help="The process: fusion, edge, evaluation, tablet or recorder.")],
+    name: Annotated[str, typer.Argument(help="The process: edge, evaluation, fusion, recorder or tablet.")],
     site: SiteFile,
     data: DataFolder = Path("build"),
     camera: Annotated[str | None, typer.Option(help="The camera that an edge process serves.")] = None,

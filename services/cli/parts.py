@@ -14,7 +14,7 @@ from typing import cast
 from models.commands import Simulation
 from models.errors import UserError
 from models.inspection import Inspection
-from models.process import Check, ProcessContext
+from models.process import REPLAY, Check, ProcessContext
 
 PROCESSES = "kinebox.processes"
 CHECKS = "kinebox.checks"
@@ -34,7 +34,7 @@ def find_process(name: str) -> EntryPoint:
     for entry in offered:
         if entry.name == name:
             return entry
-    known = ", ".join(sorted(offered.names)) or "none"
+    known = ", ".join(sorted(offered.names - {REPLAY})) or "none"  # A replay is started by a command of its own.
     raise UserError(f"no process is called '{name}' (there are: {known}); correct the name, or run 'make setup'")
 
 

@@ -5,12 +5,15 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import msgspec
 import pytest
 
 from models.config.site import SITE_VERSION, decode_site
+from models.process import REPLAY
+from services.cli.parts import PROCESSES
 from tests.integration.box import ROOT, fake_parts, write_site
 from tests.integration.waiting import free_port, until
 
@@ -86,10 +89,16 @@ def test_an_old_site_file_is_refused_with_the_command_that_mends_it(site: Path) 
     assert "nothing to do" in kinebox("config", "migrate", str(site)).stdout
 
 
+def test_the_help_names_the_processes_that_there_are() -> None:
+    told = " ".join(kinebox("process", "--help").stdout.split())
+    *others, last = sorted(entry_points(group=PROCESSES).names - {REPLAY})
+    assert f"The process: {', '.join(others)} or {last}." in told
+
+
 @pytest.mark.parametrize(
     ("words", "line"),
     [
-        (("cook",), "no process is called 'cook' (there are: edge, evaluation, fusion, recorder, replay, tablet)"),
+        (("cook",), "no process is called 'cook' (there are: edge, evaluation, fusion, recorder, tablet)"),
         (("edge", "--camera", "zzz"), "camera 'zzz' is not in "),
         (("edge",), "process 'edge' serves one camera; name it with --camera (a, b)"),
         (("fusion", "--camera", "a"), "process 'fusion' serves no camera of its own; leave out --camera"),

@@ -112,3 +112,17 @@ def test_a_path_that_no_disk_could_have_is_named_by_its_key(key: str, path: str)
 @pytest.mark.parametrize("key", PATHS)
 def test_a_path_in_any_script_may_be_one(key: str) -> None:
     decode_site(PATHS[key].replace("PATH", "/srv/校准/../ü/" + "d" * 255).encode(), "site.toml")
+
+
+@pytest.mark.parametrize(
+    ("keys", "named"),
+    [
+        ("rate_hz = 25", "leave out `rate_hz` - at"),
+        ("shutter_delay_ms = 3", "leave out `shutter_delay_ms` - at"),
+        ("rate_hz = 25\nshutter_delay_ms = 3", "leave out `rate_hz` and `shutter_delay_ms` - at"),
+    ],
+)
+def test_of_a_simulated_camera_only_the_keys_that_it_has_are_named(keys: str, named: str) -> None:
+    text = GOOD.replace('kind = "video"\npath = "a.avi"\n', f'kind = "simulated"\npath = "a"\n{keys}\n')
+    with pytest.raises(UserError, match=named):
+        decode_site(text.encode(), "site.toml")

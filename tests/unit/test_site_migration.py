@@ -82,6 +82,11 @@ def test_windows_line_ends_stay(old: Path) -> None:
     [
         ("[fusion]", "[fusian]", r"site file .*site\.toml, once migrated, would be refused and was left as it is: .*`fusian`"),
         ("offset_ms  =  12.5", 'offset_ms = "late"', r"left as it is: .*`\$\.cameras\[0\]\.shutter_delay_ms`"),
+        (
+            'kind = "video"',
+            'kind = "simulated"',
+            r"^site file .*site\.toml: cameras\[0\] is simulated, and its lesson says how late it exposes; delete offset_ms$",
+        ),
         ('"offset_ms" = -3', "offset_ms = -3\nshutter_delay_ms = 4", r"cameras\[1\] has both offset_ms and shutter_delay_ms"),
         ("version = 1", "version = 99", r"version 99 is for a newer KineBox"),
         ("version = 1", "version = 0", r"`\$\.version`"),

@@ -24,4 +24,7 @@ def apply(site: dict[str, Any]) -> dict[str, Any]:
 def _renamed(camera: dict[str, Any], number: int) -> dict[str, Any]:
     if _OLD in camera and _NEW in camera:
         raise UserError(f"cameras[{number}] has both {_OLD} and {_NEW}, which mean the same; delete {_OLD}")
+    if camera.get("kind") == "simulated" and camera.get(_OLD, 0) != 0:
+        # The schema refuses it, but by the new name, which is not in the file.
+        raise UserError(f"cameras[{number}] is simulated, and its lesson says how late it exposes; delete {_OLD}")
     return {_NEW if key == _OLD else key: value for key, value in camera.items()}
