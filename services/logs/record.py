@@ -59,7 +59,8 @@ def record_of(said: Mapping[str, Any], process: str, now: dt.datetime) -> LogRec
         time=_time(said.get("time")) or now.astimezone(dt.UTC),
         process=_text(named if isinstance(named, str) and named else process, 64),
         level=level if level in LEVELS else "info",
-        event=_text(said.get("event", ""), _LONGEST_EVENT),
+        # Libraries end some of theirs with a line's end, which would be shown as what it is to whoever reads it.
+        event=_text(said.get("event", ""), _LONGEST_EVENT).strip(),
         fields=_fields({key: value for key, value in said.items() if key not in _RESERVED}),
         exception=_end_of_text(said.get("exception") or ""),
     )

@@ -64,6 +64,17 @@ def test_the_file_has_every_line_as_json(tmp_path: Path) -> None:
     assert without_time(console) == ["camera a      camera 'a': film.avi is missing", "supervisor    ended"]
 
 
+def test_a_line_that_ends_with_a_lines_end_is_shown_without_it(tmp_path: Path) -> None:
+    console = io.StringIO()
+    journal = Journal(tmp_path, console)
+    # As Uvicorn logs what an application raises.
+    said = {"process": "tablet", "level": "error", "event": "Exception in ASGI application\n", "exception": "Traceback\nValueError"}
+    journal.child_said("tablet", msgspec.json.encode(said).decode())
+    journal.close()
+    assert without_time(console) == ["tablet        Exception in ASGI application ('kinebox logs' has the traceback)"]
+    assert msgspec.json.decode(journal.path.read_text())["event"] == "Exception in ASGI application"
+
+
 @pytest.mark.parametrize("time", ['"noon"', "null", "7"])
 def test_a_line_with_no_time_that_can_be_read_is_shown_all_the_same(tmp_path: Path, time: str) -> None:
     console = io.StringIO()
