@@ -1,5 +1,6 @@
 """The tablet process over real sockets: what a client gets, what a bad one cannot do, and what stops a start."""
 
+import itertools
 import json
 import queue
 import socket
@@ -167,6 +168,22 @@ def test_another_sites_page_may_not_watch(room: Room) -> None:
         pass
     with join(room, origin=Origin(room.page.rstrip("/"))) as client:
         next_motion(client)
+
+
+def test_a_page_of_no_readable_address_may_not_watch_and_is_no_defect(room: Room, caplog: pytest.LogCaptureFixture) -> None:
+    for origin in ("http://[::1", "http://[x]", "null", "http://\u00e4", "//", ""):
+        with pytest.raises(InvalidStatus, match="403"), join(room, origin=Origin(origin)):
+            pass
+    assert not caplog.records
+
+
+def test_a_request_that_is_odd_is_no_defect(room: Room, caplog: pytest.LogCaptureFixture) -> None:
+    paths = ("", "api/status", "metrics", "assets/", "%00", "%ff", "%ed%a0%80", "api/attempts/" + "9" * 5000 + "/replay")
+    for path, host in itertools.product(paths, ("[::1", "[x]:99999999", "\xff", "")):
+        with socket.create_connection(("127.0.0.1", room.port), timeout=GENEROUS_S) as client:
+            client.sendall(f"GET /{path} HTTP/1.1\r\nHost: {host}\r\n\r\n".encode("latin-1"))
+            assert client.recv(10) in {b"HTTP/1.1 2", b"HTTP/1.1 4"}, (path, host)
+    assert not caplog.records
 
 
 def test_a_full_house_is_said_to_be_full(room: Room) -> None:
