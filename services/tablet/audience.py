@@ -8,10 +8,16 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from services.tablet.credit import CreditError, NewestFirst
 from services.tablet.messages import CLIENT_MESSAGE, Ack, Ping, Pong, Wish
+from services.tablet.pace import Pace
 
 MOTION_CREDIT = 2
 STATUS_CREDIT = 1
 MAX_CLIENTS = 50
+MAX_OF_ONE_ADDRESS = 40
+"""Behind one address may be a school's proxy; but nobody alone keeps all others out."""
+READ_HZ = 120
+"""Messages of a client that are read a second: a page answers every figure and status, at most about forty."""
+READ_BURST = 120
 
 
 class Session:
@@ -41,6 +47,7 @@ class Session:
         self._attempts: str | None = None
         self._ping: Ping | None = None
         self._work = asyncio.Event()
+        self._pace = Pace(READ_HZ, READ_BURST)
 
     def offer_motion(self, frame: bytes) -> None:
         """Have a packed motion frame sent as soon as the client has credit."""
@@ -66,6 +73,8 @@ class Session:
                 if message["type"] == "websocket.disconnect":
                     return
                 self._receive(message.get("text"))
+                if (wait_s := self._pace.wait_s(self._clock_ns() * 1e-9)) > 0:
+                    await asyncio.sleep(wait_s)
         finally:
             sender.cancel()
             await asyncio.gather(sender, return_exceptions=True)
@@ -111,23 +120,23 @@ class Audience:
     """All sessions. Used from the event loop's thread only."""
 
     def __init__(self) -> None:
-        self._sessions: set[Session] = set()
+        self._sessions: dict[Session, str] = {}
 
     def __len__(self) -> int:
         return len(self._sessions)
 
-    @property
-    def full(self) -> bool:
-        """Whether no further client may join."""
-        return len(self._sessions) >= MAX_CLIENTS
+    def has_room_for(self, address: str) -> bool:
+        """Whether one more client from an address may join."""
+        addresses = list(self._sessions.values())
+        return len(addresses) < MAX_CLIENTS and addresses.count(address) < MAX_OF_ONE_ADDRESS
 
-    async def attend(self, session: Session) -> None:
+    async def attend(self, session: Session, address: str) -> None:
         """Serve one client until it leaves."""
-        self._sessions.add(session)
+        self._sessions[session] = address
         try:
             await session.run()
         finally:
-            self._sessions.discard(session)
+            del self._sessions[session]
 
     def show_motion(self, frame: bytes) -> None:
         """Offer a motion frame to everyone."""

@@ -23,6 +23,7 @@ from services.support import listening
 from services.support.health import PERIOD_S, HealthReporter
 from services.support.teaching_files import load_teachings, own_folder
 from services.tablet.page import PAGE, require_page
+from services.tablet.page_socket import PageSocket
 from services.tablet.room_state import RoomState
 from services.tablet.server import TabletServer, Told, create_app
 from services.tablet.teaching_words import words_of
@@ -104,6 +105,7 @@ async def _serve(context: ProcessContext, server: TabletServer, listener: socket
             log_config=None,
             access_log=False,
             server_header=False,
+            ws=PageSocket,
         )
     )
     loop = asyncio.get_running_loop()

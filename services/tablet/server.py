@@ -274,14 +274,14 @@ def create_app(server: TabletServer, page: Path | None) -> FastAPI:
             await socket.close(_POLICY_VIOLATION, "this page is not the box's")
             return
         await socket.accept()
-        if server.audience.full:
+        if not server.audience.has_room_for(address := socket.client.host if socket.client else ""):
             await socket.close(_TRY_AGAIN_LATER, "too many tablets")
             return
         session = server.session(socket)
         session.offer_status(server.status().model_dump_json())
         if server.listed is not None:
             session.offer_attempts(server.listed.model_dump_json())
-        await server.audience.attend(session)
+        await server.audience.attend(session, address)
 
     if page is not None:
         app.mount("/", StaticFiles(directory=page, html=True), name="page")

@@ -6,7 +6,7 @@ import queue
 import socket
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from typing import Any
@@ -23,8 +23,8 @@ from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.health import Health
 from models.process import Subscription
-from services.tablet import motion_frame, openapi, process
-from services.tablet.audience import MAX_CLIENTS
+from services.tablet import motion_frame, openapi, page_socket, process
+from services.tablet.audience import MAX_CLIENTS, MAX_OF_ONE_ADDRESS, READ_BURST, READ_HZ
 from services.tablet.server import TabletServer
 from tests.browser.room import CAMERAS, Room, tablet_context
 
@@ -42,8 +42,9 @@ def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Room]:
         yield made
 
 
-def join(room: Room, origin: Origin | None = None) -> AbstractContextManager[ClientConnection]:
-    return connect(room.page.replace("http", "ws") + "ws", compression=None, proxy=None, origin=origin)
+def join(room: Room, origin: Origin | None = None, of: str = "127.0.0.1") -> AbstractContextManager[ClientConnection]:
+    address = room.page.replace("http", "ws") + "ws"
+    return connect(address, compression=None, proxy=None, origin=origin, source_address=(of, 0))
 
 
 def next_motion(client: ClientConnection) -> motion_frame.MotionFrame:
@@ -188,11 +189,72 @@ def test_a_request_that_is_odd_is_no_defect(room: Room, caplog: pytest.LogCaptur
 
 def test_a_full_house_is_said_to_be_full(room: Room) -> None:
     with ExitStack() as clients:
-        for _ in range(MAX_CLIENTS):
-            clients.enter_context(join(room))
+        for number in range(MAX_CLIENTS):
+            clients.enter_context(join(room, of=f"127.0.0.{2 + number % 2}"))
         until(room, "clients", MAX_CLIENTS)
         with join(room) as late, pytest.raises(ConnectionClosed, match="too many tablets"):
             late.recv(timeout=GENEROUS_S)
+
+
+def test_tablets_of_one_address_keep_no_tablet_of_another_one_out(room: Room) -> None:
+    with ExitStack() as clients:
+        for _ in range(MAX_OF_ONE_ADDRESS):
+            clients.enter_context(join(room))
+        until(room, "clients", MAX_OF_ONE_ADDRESS)
+        with join(room) as late, pytest.raises(ConnectionClosed, match="too many tablets"):
+            late.recv(timeout=GENEROUS_S)
+        with join(room, of="127.0.0.2") as other:
+            next_motion(other)
+
+
+@pytest.mark.slow
+def test_a_client_that_sends_without_end_is_read_no_faster_and_loses_nothing(room: Room) -> None:
+    with join(room) as client, join(room) as other:
+        began = httpx.get(room.page + "api/status").json()
+        count = 3 * READ_BURST
+        for _ in range(count):
+            client.send("no message")
+        client.send('{"type":"ping","id":5}')
+        status = until(room, "rejected_client_messages", count)
+        passed_s = (status["box_time_us"] - began["box_time_us"]) * 1e-6
+        assert count <= READ_BURST + READ_HZ * passed_s, "all that there was time for"
+        assert next_json(client, "pong")["id"] == 5
+        next_motion(other)
+
+
+TOO_MANY = page_socket.BURST + 1
+
+
+@pytest.mark.parametrize(
+    "send",
+    [
+        lambda client: [client.ping() for _ in range(TOO_MANY)],
+        lambda client: [client.pong() for _ in range(TOO_MANY)],
+        lambda client: client.send([""] * TOO_MANY),
+    ],
+    ids=["pings", "pongs", "pieces"],
+)
+def test_a_client_that_sends_what_no_page_does_without_end_is_ended_with_a_reason(
+    room: Room, send: Callable[[ClientConnection], object], monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(page_socket, "HZ", 1e-3)  # However slowly this machine sends them.
+    with join(room) as client, join(room) as other:
+        send(client)
+        with pytest.raises(ConnectionClosed, match=r"1008.*too many pings or pieces"):
+            next_motion_forever(client)
+        next_motion(other)
+    assert not caplog.records
+
+
+def test_a_text_that_is_none_costs_its_sender_the_connection_and_leaves_no_traceback(
+    room: Room, caplog: pytest.LogCaptureFixture
+) -> None:
+    with join(room) as client, join(room) as other:
+        client.send(b"\xff\xfe", text=True)
+        with pytest.raises(ConnectionClosed, match="1007"):
+            next_motion_forever(client)
+        next_motion(other)
+    assert not caplog.records
 
 
 @pytest.mark.slow
