@@ -8,6 +8,7 @@ from contextlib import contextmanager, suppress
 
 import structlog
 import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from models.config.site import TabletConfig
 from models.errors import UserError
@@ -22,6 +23,7 @@ from models.process import Bus, Delivery, ProcessContext, Subscription
 from services.support import listening
 from services.support.health import PERIOD_S, HealthReporter
 from services.support.teaching_files import load_teachings, own_folder
+from services.tablet.door import Door, places
 from services.tablet.page import PAGE, require_page
 from services.tablet.page_socket import PageSocket
 from services.tablet.room_state import RoomState
@@ -88,11 +90,15 @@ def _tell(bus: Bus, told: Told) -> None:
 
 
 class _Uvicorn(uvicorn.Server):
-    """Uvicorn that leaves signals to the command line, which sets `context.stop`."""
+    """Uvicorn that leaves signals to the command line, which sets `context.stop`, and connections to the `Door`."""
 
     @contextmanager
     def capture_signals(self) -> Iterator[None]:
         yield
+
+    def protocol(self) -> asyncio.Protocol:
+        """Serves one connection, as those do that Uvicorn lets in itself."""
+        return H11Protocol(self.config, self.server_state, app_state={})
 
 
 async def _serve(context: ProcessContext, server: TabletServer, listener: socket.socket) -> None:
@@ -105,9 +111,14 @@ async def _serve(context: ProcessContext, server: TabletServer, listener: socket
             log_config=None,
             access_log=False,
             server_header=False,
+            http=H11Protocol,
             ws=PageSocket,
+            lifespan="off",
+            # Whoever sends what cannot be read is answered so; a line of the log for each of them would be a flood.
+            log_level="error",
         )
     )
+    door = Door(listener, web.protocol, places())
     loop = asyncio.get_running_loop()
 
     def hand_over(action: Callable[[], None]) -> None:
@@ -120,6 +131,7 @@ async def _serve(context: ProcessContext, server: TabletServer, listener: socket
 
     def end(part: "asyncio.Task[None]") -> None:
         web.should_exit = True
+        entrance.cancel()
         if not part.cancelled() and (error := part.exception()) is not None:
             log.error("a part of the server failed", part=part.get_name(), error=repr(error))
 
@@ -128,15 +140,18 @@ async def _serve(context: ProcessContext, server: TabletServer, listener: socket
     context.bus.watch_alive(topics.ALL_ALIVE, seen)
     context.bus.declare_alive(topics.alive(context.name))
     receiver = asyncio.create_task(asyncio.to_thread(_receive, context, subscription, server, hand_over), name="bus")
+    entrance = asyncio.create_task(door.let_in(), name="door")
     endless = (
         asyncio.create_task(server.show_statuses(), name="statuses"),
         asyncio.create_task(_publish_health(context, server), name="health"),
         asyncio.create_task(_beat(context), name="beat"),
+        asyncio.create_task(door.show_out(), name="connections"),
+        entrance,
     )
     for part in (receiver, *endless):
         part.add_done_callback(end)
     try:
-        await web.serve(sockets=[listener])
+        await web.serve(sockets=[])  # The door has the listener.
     finally:
         context.stop.set()
         for part in endless:
