@@ -2,7 +2,8 @@
 
 What was observed goes through fusion's step again; motions come out with their times moved to now, so that a figure is as old
 when it is shown as it was in the lesson. What cameras and fusion said of themselves is said again at its time. Attempts are found
-and judged again by the evaluation, which runs beside; it is told what pupils were to do at that time of the lesson, and who was up.
+and judged again by the evaluation, which runs beside and is waited for, so that it sees the lesson from its first figure on; it is
+told what pupils were to do at that time of the lesson, and who was up.
 """
 
 import threading
@@ -13,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
+import structlog
 
 from models.errors import UserError
 from models.messages import codec, topics
@@ -36,6 +38,11 @@ _LATE_NS = SECOND_NS // 2
 _SAID_FOR_NS = 3 * SECOND_NS
 """What a process of the lesson said is said again for so long in the lesson's time; after that it was silent."""
 _ROUND_S = 0.1
+EVALUATION_WITHIN_NS = 30 * SECOND_NS
+"""So long the lesson waits for the evaluation: an attempt with which it begins would else be missed, and all numbers be too small
+by one. A figure without words is still better than none for ever."""
+
+log = structlog.get_logger()
 
 
 def prepare() -> None:
@@ -95,6 +102,7 @@ class Player:
         self._said: dict[str, tuple[int, Health]] = {}
         self._asked: ActivityRequest | None = None
         self._ask_again = threading.Event()
+        self._evaluated = threading.Event()
         self._position_ns = 0
         self._begin_ns = self._end_ns = lesson.header.started_ns
         self._turns = turns_of(self._measured())
@@ -104,13 +112,32 @@ class Player:
     def run(self) -> None:
         """Play the lesson, again and again if that is wished."""
         self._bus.declare_alive(topics.alive(self._context.name))
-        # It may come later than the first word about it, and be started again.
-        self._bus.watch_alive(topics.alive(EVALUATION), lambda _, alive: self._ask_again.set() if alive else None)
+        self._bus.watch_alive(topics.alive(EVALUATION), self._evaluation_is)
+        if not self._wait_for_evaluation():
+            return
         while not self._context.stop.is_set():
             self._play(replay(self._lesson.parts(), self._rig, self._config))
             # A round without an entry, and thus without a wait of its own, must not spin.
             if not self._playback.loop or not self._wait_until(self._clock_ns() + round(_ROUND_S * SECOND_NS)):
                 return
+
+    def _evaluation_is(self, _topic: str, alive: bool) -> None:
+        """Told from a thread of the bus: the evaluation came, also again, or went."""
+        if alive:
+            self._evaluated.set()
+            self._ask_again.set()
+
+    def _wait_for_evaluation(self) -> bool:
+        """Go round until the evaluation hears everything, or has had its time; False if the process shall end."""
+        latest_ns = self._clock_ns() + EVALUATION_WITHIN_NS
+        while not self._evaluated.is_set():
+            now_ns = self._clock_ns()
+            if now_ns >= latest_ns:
+                log.warning("the evaluation is not there: attempts at the lesson's beginning are missed")
+                return True
+            if not self._wait_until(now_ns + round(_ROUND_S * SECOND_NS)):
+                return False
+        return True
 
     def _measured(self) -> Iterator[LessonPart]:
         """The lesson's parts; from when to when it is becomes known as they are read, for one reading of a long one is enough."""

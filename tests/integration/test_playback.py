@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+import structlog.testing
 
 from models.config.site import SITE_VERSION, CameraConfig, Site
 from models.errors import UserError
@@ -17,7 +18,7 @@ from models.messages.health import Health
 from models.messages.motion import Motion
 from models.messages.pupil import PupilTurn
 from models.process import Playback, ProcessContext, Resources, Subscription
-from services.bus.memory import MemoryRouter
+from services.bus.memory import MemoryBus, MemoryRouter
 from services.fusion.config import PRESETS
 from services.lesson import playback
 from services.lesson.lesson_file import LessonWriter
@@ -60,7 +61,9 @@ class Played:
     """Everything that a replay publishes."""
 
     def __init__(self, router: MemoryRouter) -> None:
+        self._router = router
         self._bus = router.open()
+        self._evaluation: MemoryBus | None = None
         self._motions: Subscription = self._bus.subscribe(topics.motion("live"), topics.motion("smooth"), keep=10_000)
         self._healths: Subscription = self._bus.subscribe(topics.ALL_HEALTH, keep=10_000)
         self._wishes: Subscription = self._bus.subscribe(topics.activity_request(), keep=10_000)
@@ -88,14 +91,18 @@ class Played:
         return self
 
     def evaluation_comes(self) -> None:
-        """As when its process joins the bus, or comes back."""
-        self._bus.declare_alive(topics.alive("evaluation"))
+        """As when its process joins the bus, or is started again."""
+        if self._evaluation is not None:
+            self._evaluation.close()
+        self._evaluation = self._router.open()
+        self._evaluation.declare_alive(topics.alive("evaluation"))
 
 
 @contextmanager
 def playing(
-    file: Path, *, loop: bool, speed: float = 8.0, beat: Callable[[], None] = lambda: None
+    file: Path, *, loop: bool, speed: float = 8.0, beat: Callable[[], None] = lambda: None, evaluated: bool = True
 ) -> Iterator[tuple[Played, threading.Thread]]:
+    """The replay of a lesson, and of what the bus has from it; `evaluated`: the evaluation is there before it."""
     router, stop = MemoryRouter(), threading.Event()
     cameras = [CameraConfig(name=name, kind="video", path="none.avi") for name in GYM.rig.names]
     context = ProcessContext(
@@ -112,6 +119,8 @@ def playing(
         beat=beat,
     )
     played = Played(router)
+    if evaluated:
+        played.evaluation_comes()
     thread = threading.Thread(target=playback.main, args=(context,), daemon=True)
     thread.start()
     try:
@@ -166,6 +175,29 @@ def test_cameras_and_fusion_say_again_what_they_said_and_others_of_that_day_do_n
     told = [health.replay for health in played.healths if health.replay is not None]
     assert all(0 <= replay.position_s <= replay.length_s + 0.1 for replay in told)
     assert all(replay.length_s == pytest.approx(3.0, abs=0.2) for replay in told)
+
+
+@pytest.mark.slow
+def test_the_lesson_waits_for_the_evaluation_so_that_an_attempt_with_which_it_begins_is_not_missed(lesson: Path) -> None:
+    with playing(lesson, loop=False, evaluated=False) as (played, thread):
+        until(lambda: any(h.replay is not None for h in played.collect().healths), "a word of the replay")
+        assert (played.begun, played.live, played.smooth) == ([], [], [])
+        assert {health.replay.position_s for health in played.healths if health.replay is not None} == {0.0}
+        played.evaluation_comes()
+        thread.join(DEADLINE_S)
+    assert len(played.collect().begun) == 1
+    with open_lesson(lesson) as opened:
+        recorded = (m for item in replay(opened.parts(), GYM.rig, PRESETS["default"]) for m in item.motions if m.kind == "smooth")
+        assert played.smooth[0].sequence == next(recorded).sequence
+
+
+@pytest.mark.slow
+def test_a_lesson_is_played_without_an_evaluation_that_does_not_come(lesson: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(playback, "EVALUATION_WITHIN_NS", S // 5)
+    with structlog.testing.capture_logs() as logged, playing(lesson, loop=False, evaluated=False) as (played, thread):
+        thread.join(DEADLINE_S)
+    assert len(played.collect().smooth) > 60
+    assert [line["event"] for line in logged] == ["the evaluation is not there: attempts at the lesson's beginning are missed"]
 
 
 @pytest.mark.slow
