@@ -72,7 +72,7 @@ export const de: Words = {
 
   lesson: {
     recording: 'Aufnahme',
-    replay: (title, beganMs) => ['Wiedergabe', title, f.day(beganMs)].filter(Boolean).join(' · '),
+    replay: (title, beganMs) => ['Wiedergabe', title, f.begun(beganMs)].filter(Boolean).join(' · '),
   },
 
   view: {

@@ -116,7 +116,7 @@ export const en = {
 
   lesson: {
     recording: 'Recording',
-    replay: (title: string, beganMs: number): string => ['Replay', title, f.day(beganMs)].filter(Boolean).join(' · '),
+    replay: (title: string, beganMs: number): string => ['Replay', title, f.begun(beganMs)].filter(Boolean).join(' · '),
   },
 
   view: {

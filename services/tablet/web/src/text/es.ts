@@ -73,7 +73,7 @@ export const es: Words = {
 
   lesson: {
     recording: 'Grabando',
-    replay: (title, beganMs) => ['Repetición', title, f.day(beganMs)].filter(Boolean).join(' · '),
+    replay: (title, beganMs) => ['Repetición', title, f.begun(beganMs)].filter(Boolean).join(' · '),
   },
 
   view: {

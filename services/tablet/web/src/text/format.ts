@@ -3,7 +3,8 @@
 export interface Formats {
   number: (value: number | null, digits?: number) => string;
   clock: (s: number | null) => string;
-  day: (ms: number) => string;
+  /** Day and time of day, by which two lessons of one day are told apart. */
+  begun: (ms: number) => string;
   moment: (ms: number | null) => string;
   milliseconds: (ms: number | null) => string;
   ms: (value: number | null) => string;
@@ -37,7 +38,7 @@ const UNITS: Record<string, string> = { deg: '°', cm: ' cm', pct: ' %', m_s: ' 
  * @param ofHeight what a percentage of the pupil's height is of
  */
 export function formats(locale: string, ofHeight: string): Formats {
-  const days = new Intl.DateTimeFormat(locale, { dateStyle: 'long' });
+  const begins = new Intl.DateTimeFormat(locale, { dateStyle: 'long', timeStyle: 'short' });
   const moments = new Intl.DateTimeFormat(locale, { dateStyle: 'medium', timeStyle: 'medium' });
   const ages = new Intl.RelativeTimeFormat(locale);
   const known = (value: number, digits: number): string =>
@@ -49,7 +50,7 @@ export function formats(locale: string, ofHeight: string): Formats {
   return {
     number,
     clock,
-    day: (ms) => days.format(ms),
+    begun: (ms) => begins.format(ms),
     moment: (ms) => (ms === null ? NONE : moments.format(ms)),
     milliseconds: (ms) => (ms === null ? NONE : `${Math.round(ms / 10) * 10} ms`),
     ms: (value) => (value === null ? NONE : `${known(value, 0)} ms`),

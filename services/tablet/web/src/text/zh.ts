@@ -40,7 +40,7 @@ export const zh: Words = {
 
   lesson: {
     recording: '录制中',
-    replay: (title, beganMs) => ['回放', title, f.day(beganMs)].filter(Boolean).join(' · '),
+    replay: (title, beganMs) => ['回放', title, f.begun(beganMs)].filter(Boolean).join(' · '),
   },
 
   view: {
