@@ -13,7 +13,7 @@ import pytest
 from models.messages.feedback import Colour, Judgement, MeasureResult
 from models.skeleton import coco
 from models.teaching.schema import Language
-from services.evaluation.report import page
+from services.evaluation.report import curve_chart, page
 from services.evaluation.report.body import Trunk, parts_of, together
 from services.evaluation.report.curve import curves_of
 from services.evaluation.report.figures import figures
@@ -340,6 +340,31 @@ def test_the_pupils_curve_lies_in_the_band_when_he_does_as_the_model() -> None:
         inside = (curve.pupil_deg >= low - curve.sigma_deg) & (curve.pupil_deg <= high + curve.sigma_deg)
         assert inside[known].mean() > 0.95
         assert 0 < curve.sigma_deg < 15
+
+
+def test_an_arm_that_circles_once_more_than_the_model_is_drawn_beside_it_again_and_no_line_leads_across() -> None:
+    told = attempt("volleyball_spike", exemplar=0, cue="", cue_certainty=0.0)
+    peak, circled = told.frame_of(told.keyframes_ns[2]), 12
+    joints = told.joints_m.copy()
+    shoulder = joints[:, coco.INDEX["right_shoulder"]]
+    for frame in range(peak, peak + circled):
+        turn = 2 * np.pi * (frame - peak) / circled
+        about_z = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
+        for name in ("right_elbow", "right_wrist"):
+            arm = joints[frame, coco.INDEX[name]] - shoulder[frame]
+            joints[frame, coco.INDEX[name]] = shoulder[frame] + about_z @ arm
+    circles = msgspec.structs.replace(told, joints_m=joints)
+    curve = next(one for one in curves_of(circles, shipped().teachings["volleyball_spike"]) if one.signal == "upper_arm_azimuth")
+    apart = np.abs(curve.pupil_deg - curve.standard_deg)
+    assert np.nanmax(apart) <= 180 + 1e-6
+    assert np.nanmedian(apart[peak + circled :]) < 30
+    drawn = curve_chart.chart(curve, circles, "arm", WORDS["en"])
+    heights = [
+        np.array([float(place.split(",")[1]) for place in line.split()])
+        for line in re.findall(r'<polyline points="([^"]*)" class="pupil"', drawn)
+    ]
+    assert len(heights) > 1
+    assert max(np.abs(np.diff(line)).max(initial=0) for line in heights) < curve_chart.HEIGHT_MM / 2
 
 
 def test_an_angle_that_was_not_seen_has_no_curve() -> None:

@@ -40,7 +40,7 @@ class Curve:
     Attributes:
         signal, side: which angle.
         t_s: (T,) seconds from the attempt's start.
-        pupil_deg: (T,) NaN where it was not seen, or is less sure than the tolerance.
+        pupil_deg: (T,) within half a turn of the standard; NaN where it was not seen, or is less sure than the tolerance.
         sigma_deg: one standard deviation of it, as it is in the middle of the frames.
         standard_deg: (T,) along the alignment; NaN where unknown.
         tolerance_deg: how far from the standard is as good: half of the way from good to fault, where a teacher begins to correct;
@@ -88,9 +88,12 @@ def curves_of(feedback: Feedback, teaching: Teaching | None) -> list[Curve]:
         if seen[within].mean() < LEAST_SEEN:
             continue
         value = np.where(seen, series.value, np.nan)
+        if series.turns:
+            value = _beside(value, model.value)
         t_s = whole.t_s - (feedback.keyframes_ns[0] - feedback.t_first_ns) * 1e-9
         sigma = float(np.median(series.sigma[within][seen[within]]))
-        found.append(Curve(signal, side, t_s, value, sigma, _same_turn(model.value, value), tolerance))
+        beside = model.value if series.turns else _same_turn(model.value, value)
+        found.append(Curve(signal, side, t_s, value, sigma, beside, tolerance))
         if len(found) == CURVES:
             break
     return found
@@ -136,6 +139,16 @@ def _tolerance(signal: str, side: Side, feedback: Feedback, teaching: Teaching |
                 (corrected if fault.name == feedback.cue else others).append(abs(one.good - one.fault) / 2)
     shown = [(one.good[1] - one.good[0]) / 2 for one in teaching.shown if one.signal == signal and _side(one) == side]
     return max(min(corrected or shown or others or [USUAL_TOLERANCE_DEG]), LEAST_TOLERANCE_DEG)
+
+
+def _beside(pupil_deg: Float, standard_deg: Float) -> Float:
+    """In each frame the turn that is nearest to the standard: what turns fast, as an arm after a hit, is easily followed to a whole
+    turn too many, and all that comes after it would look like a fault."""
+    known = np.flatnonzero(np.isfinite(standard_deg))
+    if not len(known):
+        return pupil_deg
+    near_deg = np.interp(np.arange(len(pupil_deg)), known, standard_deg[known])
+    return np.asarray(pupil_deg - 360 * np.rint((pupil_deg - near_deg) / 360))
 
 
 def _same_turn(standard_deg: Float, pupil_deg: Float) -> Float:

@@ -22,6 +22,7 @@ _APART_MM: Final = 2.4
 _STEPS_DEG: Final = (5, 10, 15, 30, 45, 60, 90, 180)
 _MOST_TICKS: Final = 5
 _LEAST_RANGE_DEG: Final = 30.0
+_HALF_TURN_DEG: Final = 180.0
 _STEPS_S: Final = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0)
 _MOST_SECONDS: Final = 6
 
@@ -105,10 +106,13 @@ def _gaps(curve: Curve, plane: _Plane) -> Iterator[str]:
 
 
 def _runs(plane: _Plane, t_s: Float, deg: Float) -> Iterator[list[Point]]:
-    """Of what was seen; a single frame is a dot."""
+    """Of what was seen; a single frame is a dot. An angle that goes over half a turn from the model comes in again at the other
+    edge (`Curve.pupil_deg`), and no line leads across."""
     for run in _stretches(np.isfinite(deg)):
-        points = plane.points(t_s[run], deg[run])
-        yield points if len(points) > 1 else [points[0], (points[0][0] + 0.01, points[0][1])]
+        comes_in = 1 + np.flatnonzero(np.abs(np.diff(deg[run])) > _HALF_TURN_DEG)
+        for part_s, part_deg in zip(np.split(t_s[run], comes_in), np.split(deg[run], comes_in), strict=True):
+            points = plane.points(part_s, part_deg)
+            yield points if len(points) > 1 else [points[0], (points[0][0] + 0.01, points[0][1])]
 
 
 def _stretches(flags: Bool) -> Iterator[slice]:

@@ -58,7 +58,8 @@ attempt:
   the way from `good` to `fault` in the teaching file, where a cue begins; half of the range that is good, where only that is
   known; never less than 10 degrees. Where the angle is less sure than the band is wide, there is no line but hatching. How sure
   it is elsewhere stands below, by the landmark errors of [accuracy](accuracy.md) and a noise of 10 mm a joint, which is its usual
-  size; a recorded attempt has no covariances.
+  size; a recorded attempt has no covariances. An angle that goes round is drawn in the turn that is nearest to the standard; where
+  it goes further than half a turn from it, the line ends and goes on at the other edge.
 
 The mean score's sigma is the mean of the attempts' sigmas: the errors of one pupil are alike, and more attempts make it no surer.
 Where nobody was named there is no mean score: those attempts are of several pupils, and it would be taken for somebody's.
