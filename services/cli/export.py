@@ -63,6 +63,8 @@ def export(file: Path, data: Path, site: Path | None, order: Order) -> None:
         found = _stretches(lesson, data, site, progress, order)
         header = lesson.header
     if order.attempt is None:
+        if len(found) > 1:
+            typer.echo(_why_several(found), err=True)
         takes = _all(found, name, pupil, file)
         said = [f"{_size(take)}, {len(take.attempts)} attempt{'' if len(take.attempts) == 1 else 's'}" for take in takes]
     else:
@@ -112,6 +114,15 @@ def _all(found: list[Stretch], name: str, pupil: str, file: Path) -> list[Take]:
     if not takes:
         raise UserError(f"lesson {file} has nothing to export: nobody was seen in it; export one with a pupil")
     return takes
+
+
+def _why_several(found: list[Stretch]) -> str:
+    """No figure is measured across a gap, nor across the end of a film that begins again."""
+    gaps = found[-1].segment - found[0].segment
+    begun = len(found) - 1 - gaps
+    why = [f"its recording has {gaps} gap{'' if gaps == 1 else 's'}"] if gaps else []
+    why += [f"its film or its cameras began anew {begun} time{'' if begun == 1 else 's'}"] if begun else []
+    return f"note: the lesson is in {len(found)} pieces, each with its own time from 0: {', and '.join(why)}"
 
 
 def _one(stretch: Stretch, attempt: LessonAttempt, name: str, pupil: str, file: Path) -> Take:

@@ -43,16 +43,18 @@ class Stretch:
     Attributes:
         track: on CLOCK_MONOTONIC.
         attempts: those that lie in it as a whole, in their order.
+        segment: counts the gaps of the lesson that lie before it.
     """
 
     track: Track
     attempts: tuple[LessonAttempt, ...]
+    segment: int
 
     def of_attempt(self, attempt: LessonAttempt) -> "Stretch":
         """The frames of one attempt, and it alone."""
         last = len(self.track) - 1
         first, end = (min(max(round(self.track.frame_at(t_s)), 0), last) for t_s in (attempt.first_s, attempt.last_s))
-        return Stretch(self.track.part(first, end + 1), (attempt,))
+        return Stretch(self.track.part(first, end + 1), (attempt,), self.segment)
 
 
 def stretches(
@@ -92,7 +94,7 @@ def stretches(
         tracks = {key: track_of(those, frame_s) for key, those in motions.items()}
     except ValueError as error:
         raise UserError(f"the lesson's motion is not as fusion makes it: {error}; use the KineBox that recorded it") from error
-    return [Stretch(track, _within(track, epoch, feedbacks)) for (_, epoch), track in tracks.items()]
+    return [Stretch(track, _within(track, epoch, feedbacks), segment - 1) for (segment, epoch), track in tracks.items()]
 
 
 def _asked_for_ns(feedback: Feedback, around_s: float) -> tuple[int, int]:

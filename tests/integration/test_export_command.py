@@ -198,7 +198,23 @@ def test_each_stretch_between_gaps_becomes_a_file_and_those_with_nobody_none(
     export(file, tmp_path, None, Order(Format.C3D, tmp_path / "out", None, ""))
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["lesson-1.c3d", "lesson-3.c3d"]
     np.testing.assert_allclose(read_motion(tmp_path / "out/lesson-3.c3d").joints_m, last.joints_m, atol=1e-6)
-    assert capsys.readouterr().err == "left out: lesson-2 has no frame in which a joint is known\n"
+    assert capsys.readouterr().err.splitlines() == [
+        "note: the lesson is in 3 pieces, each with its own time from 0: its recording has 2 gaps",
+        "left out: lesson-2 has no frame in which a joint is known",
+    ]
+
+
+def test_why_a_lesson_without_a_gap_becomes_several_files_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    track = moving(3, 20)
+    log: list[Entry] = []
+    for epoch in range(3):
+        begin_ns = BEGIN_NS + 10 * epoch * SECOND_NS
+        motions = (motion_of(track, frame, begin_ns, epoch) for frame in range(len(track)))
+        log += [Entry("motion", motion.t_ns, codec.encode(motion)) for motion in motions]
+    export(recorded(tmp_path, log), tmp_path, None, Order(Format.C3D, tmp_path / "out"))
+    assert [path.name for path in sorted((tmp_path / "out").iterdir())] == ["lesson-1.c3d", "lesson-2.c3d", "lesson-3.c3d"]
+    told = "note: the lesson is in 3 pieces, each with its own time from 0: its film or its cameras began anew 2 times\n"
+    assert capsys.readouterr().err == told
 
 
 def test_frames_that_are_missing_are_unknown_and_time_goes_on(tmp_path: Path) -> None:
