@@ -21,6 +21,7 @@ from services.evaluation.resampling import resampled
 from services.evaluation.search import attempts_in, leading_side, performances_like
 from services.evaluation.track import Track
 from services.lesson.imports.file import read_motion
+from services.lesson.layout import SUFFIX
 from services.lesson.lesson_reader import open_lesson
 from services.lesson.readable_names import readable
 from services.lesson.replay import configuration
@@ -114,9 +115,11 @@ def record(file: Path, data: Path, site: Path | None, order: Record) -> None:
     if order.action not in {None, attempt.action}:
         attempt = _tried_as(track, attempt, own.counts(str(order.action)), name)
     when = told(header, each)
-    origin = f"attempt {number} of the lesson of {header.begun:%Y-%m-%d %H:%M} ({when})"
+    # Short enough for a line of `kinebox standard list`.
+    origin = f"attempt {number}, lesson {header.begun:%Y-%m-%d}, {header.wall(each.found.moments_s[0]):%H:%M:%S}"
     whose = f", pupil {each.pupil}" if each.pupil else ""
-    performance = _Performance(track, attempt, origin, name, f"{name} ({when}{whose})", "choose another attempt")
+    shown = f"attempt {number} of lesson {file.name.removesuffix(SUFFIX)} ({when}{whose})"
+    performance = _Performance(track, attempt, origin, name, shown, "choose another attempt")
     _keep(own, performance, _options(own, data, site))
     if attempt is each.found:
         _say_what_was_corrected(attempts, number)
@@ -189,7 +192,8 @@ def _count(own: OwnStandards, made: Standard, source: str, options: str, mirrore
     kept, before = placed.standard, SHIPPED if placed.before is None else placed.before
     seconds = kept.moments_s[-1] - kept.moments_s[0]
     lines = (
-        f"{kept.action}: version {kept.version} counts now, made of {source}: {seconds:.1f} s, by {kept.stature_m:.2f} m{mirrored}",
+        f"{kept.action}: version {kept.version} counts now, made of {source}",
+        f"it takes {seconds:.1f} s, performed by somebody {kept.stature_m:.2f} m tall{mirrored}",
         f"{own.file(kept.action)}: {AT_NEXT_START}",
         f"bring back what counted before ({counting.origin}): kinebox standard restore {kept.action} {before} {options}",
     )

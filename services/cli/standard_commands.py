@@ -15,7 +15,7 @@ Site = Annotated[
 ]
 Seconds = float | None
 
-standard_app = typer.Typer(help="Standards: how an action is done well, as pupils are compared with it.", no_args_is_help=True)
+standard_app = typer.Typer(help="Standards: how an action is done well.", no_args_is_help=True)
 
 
 def add_to(app: typer.Typer) -> None:
@@ -29,7 +29,7 @@ def standard_list(
     site: Site = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON, for programs.", show_default=False)] = False,
 ) -> None:
-    """List the standards of all actions: the one that counts, and those that can count again."""
+    """List which standards count, and which can count again."""
     from services.cli import standards  # noqa: PLC0415
 
     standards.listed(data, site, json=json)
@@ -71,7 +71,10 @@ def standard_import(
     data: DataFolder = Path("build"),
     site: Site = None,
 ) -> None:
-    """Make a motion of another program, or a standard of another school, the standard of an action."""
+    """Make a motion or standard from elsewhere the standard.
+
+    The motion of another program, or the standard of another school.
+    """
     from services.support.environment import process_environment  # noqa: PLC0415
 
     os.environ.update(process_environment(data))  # before numpy and numba are imported
@@ -84,12 +87,15 @@ def standard_import(
 def standard_restore(
     action: Annotated[str, typer.Argument(help="Its action.")],
     version: Annotated[
-        str | None, typer.Argument(help="A number from the list, or 'shipped'; if left out, the one before that which counts.")
+        str | None, typer.Argument(help="A number from the list, or 'shipped'; if left out, the next lower number than counts now.")
     ] = None,
     data: DataFolder = Path("build"),
     site: Site = None,
 ) -> None:
-    """Make a standard that counted before count again; the one that counts is kept."""
+    """Make a standard that counted before count again.
+
+    The one that counts now is kept.
+    """
     from services.cli import standards  # noqa: PLC0415
 
     standards.restore(action, version, data, site)

@@ -83,7 +83,10 @@ def listed(data: Path, site: Path | None, *, json: bool) -> None:
             "cannot be read" if row.origin is None else printable(row.origin),
         )
     # A pipe has no edge: a line a standard there.
-    Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else _PIPE_WIDTH).print(table)
+    console = Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else _PIPE_WIDTH)
+    with console.capture() as drawn:
+        console.print(table)
+    typer.echo("\n".join(line.rstrip() for line in drawn.get().splitlines()))
     for row in rows:
         if row.problem:
             typer.echo(printable(row.problem), err=True)
@@ -94,7 +97,7 @@ def restore(action: str, version: str | None, data: Path, site: Path | None) -> 
 
     Args:
         action: its action.
-        version: a number, or `SHIPPED`; None for the one before that which counts.
+        version: a number, or `SHIPPED`; None for the next lower number that is kept, and KineBox's own below all of them.
         data: the data folder.
         site: the site file, if it names another folder.
 
@@ -130,7 +133,7 @@ def _counting(own: OwnStandards, action: str) -> int | str | None:
 
 
 def _before(own: OwnStandards, action: str) -> int | str:
-    """The newest one that is older than what counts."""
+    """The one with the next lower number, whatever counted in between: so, asked again and again, it goes back through all."""
     counting, numbers = _counting(own, action), [one.number for one in own.kept(action)]
     if counting == SHIPPED:
         remedy = f"name one of {', '.join(map(str, numbers))}" if numbers else "no other is kept"

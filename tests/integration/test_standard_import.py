@@ -124,8 +124,8 @@ def test_a_standard_of_another_school_gets_a_number_of_its_own_and_is_otherwise_
         ours.put(replace(squat, origin=origin))
     bring_in(theirs.file("squat"), tmp_path / "ours", None, Import("squat"))
     out = capsys.readouterr().out.splitlines()
-    assert out[0].startswith(f"squat: version 4 counts now, made of {theirs.file('squat')}: ")
-    assert out[2] == f"bring back what counted before (b): kinebox standard restore squat 3 --data {tmp_path / 'ours'}"
+    assert out[0] == f"squat: version 4 counts now, made of {theirs.file('squat')}"
+    assert out[3] == f"bring back what counted before (b): kinebox standard restore squat 3 --data {tmp_path / 'ours'}"
     there, here = theirs.counts("squat"), counting(tmp_path / "ours", "squat")
     assert (here.version, here.origin, here.stature_m) == (4, there.origin, there.stature_m)
     assert encode(replace(here, version=there.version)) == encode(there)

@@ -7,13 +7,16 @@ from typing import Any
 
 import msgspec
 import pytest
+from typer.testing import CliRunner
 
 from models.errors import UserError
 from models.teaching.standard import encode
 from services.cli import standards
 from services.cli.new_standards import Import, Record, bring_in, record
+from services.cli.standard_commands import standard_app
 from services.cli.standards import restore
 from services.support.own_standards import OwnStandards
+from tests.installed import ROOT
 from tests.integration.school import SITE, counting, holds, lesson_of, record_refused
 from tests.taught import shipped
 
@@ -64,6 +67,34 @@ def test_every_version_is_listed_and_can_count_again(tmp_path: Path, capsys: pyt
     assert [line[2] for line in lines] == ["yes", "own", "own", "shipped"]
 
 
+@pytest.mark.slow
+def test_the_list_fits_on_a_page_without_trailing_blanks_and_names_no_part_of_the_code(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lesson, _ = lesson_of(tmp_path, "badminton_clear")
+    record(lesson, tmp_path, None, Record(1))
+    put(tmp_path, "imported from a C3D file on 2026-11-20")
+    capsys.readouterr()
+    standards.listed(tmp_path, None, json=False)
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 100
+    assert [line for line in lines if line != line.rstrip()] == []
+    assert "models." not in "".join(lines)
+
+
+def test_without_a_number_the_next_lower_one_comes_back_and_that_is_what_is_promised(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    put(tmp_path, "by a pupil")
+    restore("squat", "shipped", tmp_path, None)
+    put(tmp_path, "of another school")
+    restore("squat", None, tmp_path, None)
+    assert "squat: version 2 counts again (by a pupil)" in capsys.readouterr().out
+    told = CliRunner().invoke(standard_app, ["restore", "--help"], env={"COLUMNS": "200"}).stdout
+    assert "if left out, the next lower number than counts now" in " ".join(told.split())
+    assert "# the next lower number;" in (ROOT / "docs" / "teaching.md").read_text(encoding="utf-8")
+
+
 def with_a_copied_one(data: Path) -> OwnStandards:
     """Of two of the school's own the second counted, and somebody copied a file of another school over it: its version 2."""
     own = put(data, "ours", "ours, too")
@@ -97,7 +128,7 @@ def test_a_new_one_in_the_place_of_a_copied_file_says_by_which_number_and_option
     own = with_a_copied_one(data)
     new = put(tmp_path / "new", "new").file("squat")
     bring_in(new, data, None, Import("squat"))
-    told = capsys.readouterr().out.splitlines()[2]
+    told = capsys.readouterr().out.splitlines()[3]
     assert told == f"bring back what counted before (of another school): kinebox standard restore squat 3 --data '{data}'"
     restore("squat", "3", data, None)
     assert own.counts("squat").origin == "of another school"
@@ -112,7 +143,7 @@ def test_what_is_said_to_bring_a_standard_back_names_the_site_file_by_which_it_w
     site.write_text(SITE.read_text() + '\n[evaluation]\nteaching = "elsewhere"\n')
     new = put(tmp_path / "new", "new").file("squat")
     bring_in(new, tmp_path, site, Import("squat"))
-    told = capsys.readouterr().out.splitlines()[2]
+    told = capsys.readouterr().out.splitlines()[3]
     assert told.endswith(f": kinebox standard restore squat shipped --data {tmp_path} --site {site}")
 
 

@@ -34,7 +34,7 @@ from models.teaching.standard import AFTER_S, BEFORE_S, FRAME_S, Exemplar, Stand
 
 FOLDER: Final = Path(models.teaching.__file__).parent / "standards"
 _VERSION: Final = 1
-_ORIGIN: Final = "performed without a fault by the simulated pupil of 12 years (models.motions.actions)"
+_ORIGIN: Final = "a simulated pupil of 12 years, no fault"
 _YEARS: Final = 12.0
 _EXEMPLARS: Final = (
     # years, tempo, amplitude, skill
