@@ -93,7 +93,8 @@ def load_video(path: Path, camera: str) -> Video:
     try:
         if not path.is_file():
             raise UserError(
-                f"{where} is missing; correct `path` in the site file (the built-in footage: python -m edge.footage.prepare)"
+                f"{where} is missing; correct `path` in the site file "
+                "(the built-in footage: .venv/bin/python -m edge.footage.prepare)"
             )
         if path.stat().st_size == 0:
             raise UserError(f"{where} is empty; copy or prepare it again")

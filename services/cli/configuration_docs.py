@@ -18,7 +18,7 @@ TOML, with every value that it leaves to its default. An example is `deploy/site
 A file of an older version is refused by `kinebox run`. `kinebox config migrate FILE` brings it to the newest one: comments stay,
 and what it was is kept beside it as `FILE.bak-VERSION-TIME`. `--dry-run` only prints what would become different.
 
-This page is written from the schema by `python -m services.cli.configuration_docs`; a test keeps it current.
+This page is written from the schema by `.venv/bin/python -m services.cli.configuration_docs`; a test keeps it current.
 """
 _BOUNDS = {
     "minimum": "at least {}",

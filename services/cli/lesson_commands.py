@@ -69,7 +69,7 @@ def replay(
     data: DataFolder = Path("build"),
     site: LessonSite = None,
 ) -> None:
-    """Play a lesson into the page, or check that it comes out as it was."""
+    """Play a lesson into the page, or check it bit for bit."""
     from services.support.environment import process_environment  # noqa: PLC0415
 
     os.environ.update(process_environment(data))  # before numpy and numba are imported
@@ -100,7 +100,10 @@ def export(
     data: DataFolder = Path("build"),
     site: LessonSite = None,
 ) -> None:
-    """Write a lesson's motion, or one attempt of it, for other programs."""
+    """Write a lesson's motion, or an attempt, for other programs.
+
+    A lesson becomes one file; each gap, and each time that its film began anew, begins another.
+    """
     from services.support.environment import process_environment  # noqa: PLC0415
 
     os.environ.update(process_environment(data))  # before numpy and numba are imported

@@ -56,7 +56,10 @@ def logs_export(
     ] = None,
     replay: Replay = False,
 ) -> None:
-    """Pack the log, the versions, the machine and the site file without its secrets into a zip."""
+    """Pack the log into a zip, to be sent.
+
+    The versions, the machine and the site file are in it, too; secrets are not.
+    """
     from services.cli import logs  # noqa: PLC0415
 
     typer.echo(logs.pack(file, data, logs.query_of(since, level, process, grep), site, replay=replay), nl=False)

@@ -102,7 +102,7 @@ def config_check(file: SiteFileArgument) -> None:
 
 @config_app.command("show")
 def config_show(file: SiteFileArgument) -> None:
-    """Print a site file, as a site file, with every value that it leaves to its default."""
+    """Print a site file with all of its defaults, as a site file."""
     from services.cli import config  # noqa: PLC0415
 
     typer.echo(config.show(file), nl=False)
@@ -113,7 +113,10 @@ def config_migrate(
     file: SiteFileArgument,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only print what would become different.", show_default=False)] = False,
 ) -> None:
-    """Bring a site file of an older KineBox to the newest version; a backup is kept beside it."""
+    """Bring a site file of an older KineBox up to date.
+
+    A backup is kept beside it.
+    """
     from services.cli import config  # noqa: PLC0415
 
     typer.echo(config.migrate(file, dry_run), nl=False)
@@ -127,7 +130,10 @@ def doctor(
     data: DataFolder = Path("build"),
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", show_default=False)] = False,
 ) -> None:
-    """Say what is wrong with this machine, a site or its running box, and what to do; exit code 1 if something is."""
+    """Say what is wrong with this machine or box, and what to do.
+
+    Exit code 1 if something is.
+    """
     from services.cli.doctor import doctor as examine  # noqa: PLC0415
 
     raise typer.Exit(examine(site, data, as_json))

@@ -31,7 +31,7 @@ number of it, at a keyframe (`at`) or over a stretch (`over`, `take`). A **funct
   loses half its digits where knees and elbows are straight. Zero is the anatomical position. Where the International Society of
   Biomechanics has a convention it is followed and named.
 
-This page is written from the catalogue by `python -m services.cli.measures_docs`; a test keeps it current.
+This page is written from the catalogue by `.venv/bin/python -m services.cli.measures_docs`; a test keeps it current.
 """
 _TAKES: Final = """\
 ## How a number is taken of a signal

@@ -26,7 +26,10 @@ def simulate(
     ] = None,
     listed: Annotated[bool, typer.Option("--list", help="List the plans that come with KineBox.", show_default=False)] = False,
 ) -> None:
-    """Render a simulated lesson: a film of each camera, what is true in it, and a site file that plays it."""
+    """Render a simulated lesson.
+
+    It is a film of each camera, what is true in it, and a site file that plays it.
+    """
     import os  # noqa: PLC0415
 
     from services.support.environment import process_environment  # noqa: PLC0415

@@ -22,7 +22,7 @@ Nothing is measured for a scrape: every process says once a second how it is, an
 Worth an alarm: `kinebox_camera_state{state="lost"} == 1`, `kinebox_process_state{state="failed"} == 1`,
 `kinebox_machine_trouble == 1`, `increase(kinebox_process_restarts_total[10m]) > 2`.
 
-This page is written by `python -m services.tablet.metrics_docs`; a test keeps it current.
+This page is written by `.venv/bin/python -m services.tablet.metrics_docs`; a test keeps it current.
 
 | metric | type | labels | meaning |
 | --- | --- | --- | --- |

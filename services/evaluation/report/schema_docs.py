@@ -113,7 +113,8 @@ def render() -> str:
         f"\n## JSON, version {VERSION}\n",
         "The number of the version changes when a field is gone or means something else; new fields may come without.\n",
         *_object(Report.__name__, definitions, set()),
-        "This page is written from the schema by `python -m services.evaluation.report.schema_docs`; a test keeps it current.\n",
+        "This page is written from the schema by `.venv/bin/python -m services.evaluation.report.schema_docs`; "
+        "a test keeps it current.\n",
     )
     return _OPENING + "\n".join(lines)
 
