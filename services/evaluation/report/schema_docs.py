@@ -52,7 +52,8 @@ attempt:
 - the pupil at the four keyframes, the standard behind him as a shadow: seen from the side that leads, or from the front where the
   movement goes aside, or the difference does when something is to be corrected. How far a joint is off is shown by pattern and
   colour alike: plain is as it should be, dots a little off, stripes off; hollow with a dashed edge is not sure, what was not seen
-  is not drawn. Feet and hands are never drawn, for nobody measures them;
+  is not drawn. Feet and hands are never drawn, for nobody measures them. This says how surely a joint was near the standard, the
+  score how well it was done as far as it was seen: [teaching](teaching.md#how-one-thing-is-chosen);
 - two angles over time, first what the cue is about, then what the tablet shows; heights, distances and speeds have no curve. The
   black line is the pupil, the dashed one the standard along the alignment. The band is as wide as a teacher's patience: half of
   the way from `good` to `fault` in the teaching file, where a cue begins; half of the range that is good, where only that is
