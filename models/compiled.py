@@ -22,6 +22,12 @@ _REORDERING = {"reassoc", "contract", "nsz", "arcp"}
 
 
 def compiled(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
-    """Compile on first call for the types given; divisions by zero give infinities, as in numpy."""
-    kernel: Callable[Arguments, Result] = numba.njit(cache=True, error_model="numpy", fastmath=_REORDERING)(function)
+    """Compile on first call for the types given; divisions by zero give infinities, as in numpy.
+
+    A kernel is part of its callers (`forceinline`). As a function of its own it would be there twice where it is compiled, alone
+    and within a caller that optimises it further; the process that compiles could run the one and those that load the other, and
+    a lesson that the one recorded would not replay in the other to the last bit.
+    """
+    options = {"cache": True, "error_model": "numpy", "fastmath": _REORDERING, "forceinline": True}
+    kernel: Callable[Arguments, Result] = numba.njit(**options)(function)
     return kernel
