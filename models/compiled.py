@@ -28,6 +28,6 @@ def compiled(function: Callable[Arguments, Result]) -> Callable[Arguments, Resul
     and within a caller that optimises it further; the process that compiles could run the one and those that load the other, and
     a lesson that the one recorded would not replay in the other to the last bit.
     """
-    options = {"cache": True, "error_model": "numpy", "fastmath": _REORDERING, "forceinline": True}
-    kernel: Callable[Arguments, Result] = numba.njit(**options)(function)
+    compiler = numba.njit(cache=True, error_model="numpy", fastmath=_REORDERING, forceinline=True)
+    kernel: Callable[Arguments, Result] = compiler(function)
     return kernel

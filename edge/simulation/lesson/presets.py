@@ -84,6 +84,38 @@ def _lesson(name: str, seed: int, pupil: PupilPlan, **more: Any) -> Plan:
     return Plan(version=PLAN_VERSION, name=name, seed=seed, pupils=[pupil], **more)
 
 
+_TEN_ATTEMPTS: Final[tuple[tuple[str, str | None, tuple[tuple[float, float], float] | None], ...]] = (
+    ("squat", "too_shallow", None),
+    ("star_jump", None, None),
+    ("basketball_shot", "no_knee_bend", None),
+    ("badminton_clear", None, None),
+    ("long_jump", "no_arm_swing", None),
+    ("volleyball_spike", None, None),
+    ("soccer_kick", "no_backswing", ((1.3, 0.6), 180.0)),
+    ("forward_roll", None, None),
+    ("cartwheel", "bent_legs", ((0.0, 0.4), 0.0)),
+    ("run", None, ((-3.4, 0.0), 0.0)),
+)
+"""Action, fault, and where the pupil goes before it and turns to; what is not said follows where he is."""
+
+
+def ten_attempts() -> Plan:
+    """All that is taught, once: a boy of eleven, every other time with a fault that a teacher would correct at once."""
+    performs = [
+        PerformancePlan(
+            action=action,
+            faults={} if fault is None else {fault: 1.0},
+            skill=0.8,
+            wait_s=0.8,
+            place_m=UNSET if to is None else to[0],
+            facing_deg=UNSET if to is None else to[1],
+        )
+        for action, fault, to in _TEN_ATTEMPTS
+    ]
+    pupil = PupilPlan(name="pupil", age_years=11.0, sex="male", place_m=(-1.5, -0.8), performs=performs)
+    return _lesson("ten_attempts", 11, pupil, split="test")
+
+
 def tiny(cameras: int = 2, length_s: float = 1.0) -> Plan:
     """A lesson for tests: a pupil who stands, small, short."""
     return _lesson("tiny", 1, PupilPlan(name="pupil"), cameras=cameras, size_px=(320, 180), length_s=length_s)
@@ -95,6 +127,9 @@ def _round(value: float) -> float:
 
 PRESETS: Final = {
     SHIPPED: Preset("the six actions, four cameras in the corners; the lesson that comes rendered with KineBox", six_actions),
+    "ten_attempts": Preset(
+        "each of the ten actions once, every other one with a fault; a test pupil, of whom nothing was tuned", ten_attempts
+    ),
     "tiny": Preset("a second of a pupil who stands, two cameras, small pictures: to see whether this machine can render", tiny),
     **{
         f"acceptance_{seed}": Preset(f"the six actions as test pupil {seed} performs them", partial(acceptance, seed))
