@@ -1,9 +1,10 @@
 """Whether the cameras see what the calibration says: exchanged plugs, a wrong file or a camera that was knocked.
 
 Two cameras that see one person see each joint on the other's epipolar line, whoever is the pupil and wherever he is. So each
-pair is judged by itself, by the median distance from those lines over some seconds, as a share of the body's size in the picture
-(measured on the built-in footage: 1 % with the right calibration, 3 to 40 % with two cameras exchanged). Cameras outside the
-largest group of pairs that agree are named, and whether exchanging two of them would make all agree.
+pair is judged by itself, by the distances from those lines over some seconds, as a share of the body's size in the picture
+(measured on the built-in footage: 1 % with the right calibration, 3 to 40 % with two cameras exchanged). Two agree if most
+distances are small, and disagree if hardly any is: for a while each may have looked at somebody else, which is no fault. Cameras
+outside the largest group of pairs that agree are named, and whether exchanging two of them would make all agree.
 """
 
 import statistics
@@ -49,8 +50,10 @@ class _Comparisons:
         """Whether the two cameras do; None as long as there is too little to tell."""
         if len(self.distances) < NEEDED:
             return None
-        agree = statistics.median(self.distances) < TOLERANCE
-        return agree if agree or len(self.distances) == KEPT else None
+        if statistics.median(self.distances) < TOLERANCE:
+            return True
+        accused = len(self.distances) == KEPT and statistics.quantiles(self.distances, n=10)[0] >= TOLERANCE
+        return False if accused else None
 
     def would_agree(self, fundamental: Float) -> bool:
         """Whether they would if that were their fundamental matrix."""

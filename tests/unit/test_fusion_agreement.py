@@ -37,6 +37,18 @@ def test_nobody_is_blamed_when_the_calibration_is_right_whatever_the_network_get
     assert told(gym.rig, gym) is None
 
 
+def test_a_camera_that_mostly_looks_at_somebody_else_is_not_blamed() -> None:
+    # A box that has no CPU for more looks at one person a picture, and then not always at the same one as the other cameras.
+    gym = Gym(seconds=20.0, rates_hz=(5.0,), bystanders=((Person(centre_m=(1.5, 2.0), phase=0.3), (2,)),))
+    agreement = Agreement(gym.rig, SightingConfig())
+    for event in gym.events():
+        if isinstance(event, Observation):
+            other = event.camera == "cam2" and event.t_mid_ns // 1_000_000_000 % 5 < 3
+            looked_at = event.persons[1:] if other else event.persons[:1]
+            agreement.observe(msgspec.structs.replace(event, persons=looked_at))
+    assert agreement.judge() is None
+
+
 @pytest.mark.parametrize(("a", "b"), [(0, 1), (0, 2), (1, 3)])
 def test_two_cameras_that_are_exchanged_are_named_as_exchanged(a: int, b: int) -> None:
     gym = Gym(seconds=SECONDS)
