@@ -144,8 +144,8 @@ test-mutations: setup ## 100,000 mutated messages on each topic and on the table
 test-motions: $(VENV)/.ready ## Simulated pupils of all ages perform every action in every way; every fault and its size; the twin finds a known network again
 	$(PYTHON) -m pytest -n 2 -m motions tests/property tests/unit/test_twin.py
 
-test-rendering: setup ## Lessons rendered, found again, broken off and out of disk
-	$(PYTHON) -m pytest -m rendering tests/integration
+test-rendering: setup ## Lessons rendered, found again, broken off and out of disk; ten attempts from pixels to the page; some 15 minutes
+	$(PYTHON) -m pytest -m rendering tests/integration tests/browser
 
 bench-faults: setup $(FILM_OF_footage) ## Recovery and lost recording over 20 runs of each fault drill; some 45 minutes (--drills, --runs in ARGS)
 	$(PYTHON) -m tests.bench.faults --data $(DATA) $(ARGS)
