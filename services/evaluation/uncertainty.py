@@ -98,7 +98,7 @@ NETWORK: Final = Uncertainty(
     landmark_s=0.8,
     noise_scale=tuple(scale for _, scale in _OF_JOINTS),
     noise_s=0.06,
-    timing_s=0.005,
+    timing_s=0.008,
     moment_s=0.02,
 )
 """Of what the box reconstructs."""
