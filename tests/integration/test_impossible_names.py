@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from itertools import cycle
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ pytestmark = pytest.mark.slow
 
 LONG = "l" * 300
 DEEP = "d/" * 3000
+"""No folder has room for the one, no system for the other; what the commands make of them is the same."""
 COMMANDS: dict[str, tuple[str, ...]] = {
     "replay": ("replay", "{name}"),
     "replay --check": ("replay", "{name}", "--check"),
@@ -35,8 +37,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
 TAKES_LESSONS = ("replay", "replay --check", "report", "export")
 
 
-@pytest.mark.parametrize("name", [LONG, DEEP], ids=["300 letters", "6,000 characters"])
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize(("command", "name"), list(zip(COMMANDS, cycle((LONG, DEEP)), strict=False)), ids=COMMANDS)
 def test_a_name_that_is_too_long_is_one_short_line(tmp_path: Path, command: str, name: str) -> None:
     site = write_site(tmp_path, free_port(), free_port())
     words = [word.format(name=name, site=site) for word in COMMANDS[command]]
