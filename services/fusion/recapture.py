@@ -9,7 +9,7 @@ smoother goes on from there. What it makes of it is still its own matter.
 
 import numpy as np
 
-from models.arrays import Bool, Float
+from models.arrays import Float
 from services.fusion.config import FusionConfig
 from services.fusion.smoothing import Smoother
 from services.fusion.timing import Tracks
@@ -19,7 +19,7 @@ from services.fusion.views import Views
 
 def recapture(
     smoother: Smoother, index: int, tracks: Tracks, views: Views, centre_m: Float, reach_m: float, config: FusionConfig
-) -> Bool:
+) -> None:
     """Catch lost joints at one grid instant within the window.
 
     Args:
@@ -30,19 +30,14 @@ def recapture(
         centre_m: (3,) the body's centre then.
         reach_m: no joint is further from it.
         config: `smoothing.recapture_views` says by how many views fewer must object.
-
-    Returns:
-        (17,) the joints that were caught.
     """
     least = config.smoothing.recapture_views
     points, sigma, usable = tracks.at(index * config.frame_s, config.timing)
     against = objections(views, points, sigma, usable, config.triangulation, smoother.at(index))
     usable = usable & (against > least)
-    caught: Bool = np.zeros(len(against), np.bool_)
     if usable.any():
         found = triangulate(views, points, sigma, usable, config.triangulation)
         fewer = against - objections(views, points, sigma, usable, config.triangulation, found.points_m)
         near = np.linalg.norm(found.points_m - centre_m, axis=1) < reach_m
-        caught = near & (found.count >= 2) & (fewer > least)  # where nothing was found all is NaN, and nothing is true
-        smoother.move(index, found.points_m, caught)
-    return caught
+        # Where nothing was found all is NaN, and nothing is true.
+        smoother.move(index, found.points_m, near & (found.count >= 2) & (fewer > least))
