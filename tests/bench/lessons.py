@@ -25,7 +25,8 @@ from services.lesson.lesson_reader import LessonPart, open_lesson
 from tests.bench.report import Report
 from tests.bench.running_box import CpuMeter, processes, rss_mb, running_box
 from tests.browser.attempts import tried
-from tests.integration.waiting import free_port, until
+from tests.integration.waiting import until
+from tests.ports import free_port
 
 BARS = {
     "recorder_cpu_pct": ("<=", 1.0),

@@ -1,6 +1,5 @@
 """A room without cameras: the real tablet process on the bus in memory, and a person who walks because the test says so."""
 
-import socket
 import threading
 import time
 from dataclasses import dataclass, field, replace
@@ -35,6 +34,7 @@ from services.tablet import process
 from services.tablet.page import PAGE
 from tests.browser.attempts import ending
 from tests.integration.waiting import until
+from tests.ports import free_port
 from tests.synthetic.gym import ring_rig
 from tests.synthetic.person import Person
 
@@ -42,14 +42,6 @@ CAMERAS = ("cam0", "cam1", "cam2", "cam3")
 LIVE_HZ = 15.0
 """Half the rate of a box: software draws each of them."""
 MACHINE = MachineHealth(2.9, 4.0, 3100.0, 41_000.0, 63.0, 1_700_000_000_000_000_000, 0.0)
-
-
-def free_port() -> int:
-    """A port that nothing listens on at the moment."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
 
 
 @dataclass

@@ -13,8 +13,9 @@ from models.config.site import TabletConfig
 from services.supervisor.page import answers
 from tests.browser.test_page import AXE, Shown
 from tests.installed import ROOT
-from tests.integration.waiting import free_port, until
+from tests.integration.waiting import until
 from tests.lifeline import bound
+from tests.ports import free_port
 from tests.synthetic.gym import Gym
 from tests.synthetic.gym_lesson import write_gym_lesson
 

@@ -16,8 +16,9 @@ import psutil
 from tests.bench.running_box import processes, rss_mb
 from tests.faults.disk import small_disk
 from tests.installed import ROOT
-from tests.integration.waiting import free_port, until
+from tests.integration.waiting import until
 from tests.lifeline import bound
+from tests.ports import free_port
 
 SHIPPED = ROOT / "deploy/sites/footage"
 STARTING_S = 120.0

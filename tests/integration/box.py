@@ -13,8 +13,9 @@ from models.config.site import SITE_VERSION
 from models.messages import codec, topics
 from models.messages.health import Health
 from services.bus.zenoh_bus import open_client
-from tests.integration.waiting import free_port, until
+from tests.integration.waiting import until
 from tests.lifeline import bound
+from tests.ports import free_port
 
 ROOT = Path(__file__).parents[2]
 NAMES = ("fusion", "edge-a", "edge-b", "tablet", "evaluation", "recorder")

@@ -26,7 +26,8 @@ from services.fusion.process import FusionLoop
 from services.support.cpu import CpuMeter
 from services.support.machine import MachineMeter, Sensors
 from services.support.version import kinebox_version
-from tests.integration.waiting import DEADLINE_S, free_port, until
+from tests.integration.waiting import DEADLINE_S, until
+from tests.ports import free_port
 from tests.synthetic.gym import ring_rig
 from tests.synthetic.person import Person as Pupil
 

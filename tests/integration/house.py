@@ -9,7 +9,7 @@ from pathlib import Path
 
 from edge.check import NETWORKS
 from tests.integration.box import ROOT, fake_parts, write_site
-from tests.integration.waiting import free_port
+from tests.ports import free_port
 from tests.small_video import write_video
 
 CALIBRATED_PX = (640, 480)

@@ -14,7 +14,8 @@ from websockets.sync.client import connect
 from services.tablet import process
 from tests.browser.room import tablet_context
 from tests.integration.test_recorder_process import ZenohRoom
-from tests.integration.waiting import DEADLINE_S, free_port, until
+from tests.integration.waiting import DEADLINE_S, until
+from tests.ports import free_port
 
 
 @contextmanager

@@ -31,8 +31,9 @@ from services.tablet.page import PAGE
 from tests.integration.fusion_room import RIG, SITE
 from tests.integration.page_server import answers, hears, listed, next_list, numbers, page_server
 from tests.integration.test_recorder_process import ROOT, Box, ZenohRoom
-from tests.integration.waiting import free_port, until
+from tests.integration.waiting import until
 from tests.mutations.samples import feedback
+from tests.ports import free_port
 from tests.taught import some
 
 pytestmark = pytest.mark.slow

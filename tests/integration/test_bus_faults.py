@@ -11,7 +11,8 @@ import pytest
 from models.errors import UserError
 from models.process import Bus
 from services.bus.zenoh_bus import open_client, open_router
-from tests.integration.waiting import free_port, until
+from tests.integration.waiting import until
+from tests.ports import free_port
 
 pytestmark = pytest.mark.slow
 

@@ -8,7 +8,8 @@ import pytest
 from models.process import Bus, Subscription
 from services.bus.memory import MemoryRouter
 from services.bus.zenoh_bus import open_client, open_router
-from tests.integration.waiting import free_port, heard, until
+from tests.integration.waiting import heard, until
+from tests.ports import free_port
 
 Open = Callable[[], Bus]
 

@@ -12,7 +12,8 @@ from models.messages.health import Health, SupervisorHealth
 from models.messages.trouble import Trouble
 from services.bus import zenoh_bus
 from services.supervisor.bus_link import BusLink
-from tests.integration.waiting import DEADLINE_S, free_port, until
+from tests.integration.waiting import DEADLINE_S, until
+from tests.ports import free_port
 
 OWN = SupervisorHealth("test", 1, ())
 

@@ -15,7 +15,8 @@ from models.config.site import SITE_VERSION, decode_site
 from models.process import REPLAY
 from services.cli.parts import PROCESSES
 from tests.integration.box import ROOT, fake_parts, write_site
-from tests.integration.waiting import free_port, until
+from tests.integration.waiting import until
+from tests.ports import free_port
 
 pytestmark = pytest.mark.slow
 

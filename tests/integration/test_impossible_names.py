@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.integration.box import ROOT, write_site
-from tests.integration.waiting import free_port
+from tests.ports import free_port
 
 pytestmark = pytest.mark.slow
 

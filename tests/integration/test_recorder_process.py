@@ -31,7 +31,8 @@ from services.lesson.replay import compare, replay
 from services.site_file.rendering import render
 from services.support.health import ResourceMeter
 from tests.integration.fusion_room import RIG, SITE, Cameras, fusion
-from tests.integration.waiting import DEADLINE_S, free_port, until
+from tests.integration.waiting import DEADLINE_S, until
+from tests.ports import free_port
 
 pytestmark = pytest.mark.slow
 

@@ -18,7 +18,7 @@ from services.lesson.lesson_file import LessonWriter
 from services.lesson.recovery import reopen
 from services.tablet.page import PAGE
 from tests.installed import ROOT
-from tests.integration.waiting import free_port
+from tests.ports import free_port
 from tests.synthetic.gym import T0_NS, Gym
 from tests.synthetic.gym_lesson import gym_header, write_gym_lesson
 from tests.synthetic.lesson_log import entries, parts

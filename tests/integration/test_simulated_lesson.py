@@ -25,8 +25,9 @@ from edge.simulation.truth import truth_file
 from models.camera.rig import decode_rig
 from models.errors import USER_ERROR_CODE
 from tests.installed import ROOT, require_graphics, require_networks
-from tests.integration.waiting import free_port, until
+from tests.integration.waiting import until
 from tests.lifeline import bound
+from tests.ports import free_port
 from tests.system.test_box import Box
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(300), pytest.mark.rendering]

@@ -1,6 +1,5 @@
 """Waiting for what must come, without asserting how soon: a deadline is generous and only ends a test that has failed."""
 
-import socket
 import time
 from collections.abc import Callable
 
@@ -31,10 +30,3 @@ def heard(publisher: Bus, subscription: Subscription, topic: str) -> None:
     last = b"last mark"
     publisher.publish(topic, last)
     until(lambda: (delivery := subscription.receive(1.0)) is not None and delivery.payload == last, f"the last mark on {topic}")
-
-
-def free_port() -> int:
-    """A port that nobody listened on a moment ago."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])

@@ -23,8 +23,9 @@ from services.tablet import motion_frame
 from services.tablet.motion_frame import MotionFrame
 from tests.acknowledged import Acknowledged
 from tests.installed import ROOT, require_footage, require_lesson, require_networks
-from tests.integration.waiting import free_port, until
+from tests.integration.waiting import until
 from tests.lifeline import bound
+from tests.ports import free_port
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(240)]
 

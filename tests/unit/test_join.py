@@ -10,7 +10,8 @@ import pytest
 
 from services.bus import zenoh_bus
 from services.bus.join import join
-from tests.integration.waiting import DEADLINE_S, free_port
+from tests.integration.waiting import DEADLINE_S
+from tests.ports import free_port
 
 ZENOH_WAITS_S = 10.0
 """For a router that accepts and says nothing, unless it is told otherwise."""

@@ -13,7 +13,7 @@ from services.cli.parts import CHECKS
 from services.lesson.lesson_file import LessonWriter
 from services.tablet import check
 from tests.integration.fusion_room import RIG, SITE
-from tests.integration.waiting import free_port
+from tests.ports import free_port
 from tests.synthetic.gym import T0_NS, Gym
 from tests.synthetic.gym_lesson import gym_header
 from tests.synthetic.lesson_log import entries, parts

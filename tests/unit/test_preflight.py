@@ -7,7 +7,7 @@ import pytest
 from models.config.site import SITE_VERSION, BusConfig, CameraConfig, Site, TabletConfig
 from models.errors import UserError
 from services.supervisor.preflight import require_ports
-from tests.integration.waiting import free_port
+from tests.ports import free_port
 
 
 def site(page_host: str, page_port: int, bus_port: int) -> Site:
