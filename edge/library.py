@@ -1,11 +1,13 @@
-"""The networks of an edge process: the first is loaded at once, the others when they are first asked for.
+"""The networks of an edge process: both pose networks are loaded before the first picture.
 
-A pose network that is asked for is loaded beside the loop, which goes on with the one that it has. If it cannot be loaded, that
-is reported, and it is tried again after a while for as long as it is asked for.
+The smaller is asked for when a machine has too much to do, which is the wrong moment to load it; and 20 MB more by the camera
+would look like a leak. The first must be there. Another that cannot be loaded is reported, and while it is asked for it is tried
+again now and then, beside the loop, which goes on with the one that it has.
 """
 
 import threading
 from collections.abc import Callable
+from typing import get_args
 
 from edge.cameras.source import Clock, MonotonicClock
 from edge.observe import PersonDetector, PoseEstimator
@@ -17,12 +19,12 @@ RETRY_NS = 10_000_000_000
 
 
 class Library:
-    """Loads each network once, or until it succeeds.
+    """Loads each network once, or until it succeeds; all pose networks when it is made.
 
     Args:
         load_pose: returns a pose network by its name; raises UserError if its file is missing or damaged.
         load_detector: the same for the person detector.
-        first: the pose network to begin with.
+        first: the pose network to begin with; its failure is raised.
         clock: tells when a failure is long enough ago.
     """
 
@@ -42,6 +44,9 @@ class Library:
         self._loading: dict[str, threading.Thread] = {}
         self._problems: dict[str, str] = {}
         self._t_failed_ns: dict[str, int] = {}
+        for name in get_args(PoseNetworkName):
+            if name != first:
+                self._load(name)
 
     @property
     def current(self) -> PoseNetworkName:
@@ -58,7 +63,7 @@ class Library:
         if name in self._poses:
             self._current = name
         elif name not in self._loading and self._may_try(name):
-            self._loading[name] = threading.Thread(target=self._load, args=(name,), name=f"load-{name}", daemon=True)
+            self._loading[name] = threading.Thread(target=self._load_beside, args=(name,), name=f"load-{name}", daemon=True)
             self._loading[name].start()
         return self._poses[self._current]
 
@@ -78,13 +83,15 @@ class Library:
             self._problems.pop(name, None)
         except UserError as error:
             self._failed(name, str(error))
-        except Exception as error:  # noqa: BLE001 - whatever a runtime raises would end this thread unseen, and nobody would know why
+        except Exception as error:  # noqa: BLE001 - whatever a runtime raises, the camera has another network to go on with
             self._failed(
                 name, f"network {name} cannot be loaded ({type(error).__name__}: {error}); if it stays so, start KineBox anew"
             )
-        finally:
-            # Last of all: from here on the loop may start the next attempt.
-            del self._loading[name]
+
+    def _load_beside(self, name: PoseNetworkName) -> None:
+        self._load(name)
+        # Last of all: from here on the loop may start the next attempt.
+        del self._loading[name]
 
     def _failed(self, name: PoseNetworkName, problem: str) -> None:
         self._problems[name] = " ".join(problem.split())

@@ -12,26 +12,42 @@ from models.messages.control import PoseNetwork as PoseNetworkName
 from tests.fake_networks import FakeDetector, FakePose
 
 
-def test_another_network_is_loaded_beside_the_one_that_goes_on() -> None:
-    gate, loaded = threading.Event(), threading.Event()
+def test_all_networks_are_loaded_before_the_first_picture_so_that_none_is_when_the_machine_is_busy() -> None:
+    loaded: list[PoseNetworkName] = []
 
     def load(name: PoseNetworkName) -> FakePose:
-        if name == "lightning":
-            gate.wait(30)
-            loaded.set()
+        loaded.append(name)
         return FakePose(name)
 
     library = Library(load, FakeDetector, "thunder")
+    assert loaded == ["thunder", "lightning"]
+    assert [library.pose(name).name for name in ("lightning", "thunder")] == ["lightning", "thunder"]
+    assert len(loaded) == 2
+
+
+def test_a_network_that_could_not_be_loaded_is_loaded_beside_the_one_that_goes_on() -> None:
+    gate, attempts = threading.Event(), []
+
+    def load(name: PoseNetworkName) -> FakePose:
+        attempts.append(name)
+        if attempts.count("lightning") == 1 and name == "lightning":
+            raise UserError("network movenet-lightning is damaged")
+        if name == "lightning":
+            gate.wait(30)
+        return FakePose(name)
+
+    clock = StoppedClock()
+    library = Library(load, FakeDetector, "thunder", clock)
+    clock.t_ns = RETRY_NS
     assert library.pose("lightning").name == "thunder"
     assert library.pose("lightning").name == "thunder"
     gate.set()
-    assert loaded.wait(30)
     wait_for(lambda: library.pose("lightning").name == "lightning")
     assert library.current == "lightning"
-    assert library.pose("thunder").name == "thunder"
+    assert library.problem == ""
 
 
-def test_a_network_that_cannot_be_loaded_is_reported_once_and_the_other_goes_on() -> None:
+def test_a_network_that_cannot_be_loaded_is_reported_and_the_other_goes_on() -> None:
     attempts = []
 
     def load(name: PoseNetworkName) -> FakePose:
@@ -41,11 +57,8 @@ def test_a_network_that_cannot_be_loaded_is_reported_once_and_the_other_goes_on(
         return FakePose(name)
 
     library = Library(load, FakeDetector, "thunder")
-    assert library.problem == ""
-    library.pose("lightning")
-    wait_for(lambda: library.problem != "")
-    assert library.pose("lightning").name == "thunder"
     assert library.problem == "network movenet-lightning is damaged"
+    assert library.pose("lightning").name == "thunder"
     assert attempts == ["thunder", "lightning"]
 
 
@@ -71,8 +84,6 @@ def test_any_failure_is_reported_in_one_line_and_tried_again_after_a_while() -> 
 
     clock = StoppedClock()
     library = Library(load, FakeDetector, "thunder", clock)
-    library.pose("lightning")
-    wait_for(lambda: not loading_threads())
     assert library.problem.startswith("network lightning cannot be loaded (RuntimeError: no memory for the weights)")
     clock.t_ns = RETRY_NS - 1
     assert library.pose("lightning").name == "thunder"
