@@ -1,6 +1,8 @@
 """What holds for all tests."""
 
+import gc
 import signal
+from collections.abc import Generator
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -8,6 +10,17 @@ from hypothesis import HealthCheck, settings
 # No test is timed: a machine that is busy, or that imports and compiles for the first time, breaks no law.
 settings.register_profile("kinebox", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("kinebox")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """What is imported stays to the end: looking through it for garbage again and again took two of each process's five seconds."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
