@@ -7,7 +7,6 @@ and the maxima those of noise (0.3 per frame at 30 Hz is 0.3 / 900 in SI units).
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import savgol_filter
 
 from models.arrays import Float
 from models.compiled import Counts
@@ -59,6 +58,8 @@ def keyframes_of_energy(joints_m: Float, config: EnergyConfig = DEFAULT) -> Coun
     """(n,) frames at which the energy has its maxima, in their order: equation 17 and nothing else."""
     if len(joints_m) < config.window:
         return np.zeros(0, np.int64)
+    from scipy.signal import savgol_filter  # noqa: PLC0415 - a quarter of a second, and the box asks for energy alone nowhere
+
     energy = np.asarray(savgol_filter(motion_energy(joints_m, config.eta), config.window, config.order))
     inner = energy[1:-1]
     tops = 1 + np.flatnonzero((inner > energy[:-2]) & (inner >= energy[2:]) & (inner >= config.least * energy.max()))

@@ -30,7 +30,6 @@ from tests.installed import ROOT
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header
 from tests.takes import FRAME_S, moving, performed
 
-WHOLE = performed()
 NOBODY = known_track(np.full((9, 17, 3), np.nan), FRAME_S)
 
 
@@ -101,15 +100,15 @@ def recorded(folder: Path, *segments: list[Entry], name: str = "lesson") -> Path
 
 def with_attempts(folder: Path) -> Path:
     feedbacks = tuple(feedback_of(BEGIN_NS, *frames) for frames in ((2, 40, (4, 10, 20, 36)), (42, 80, (44, 50, 60, 76))))
-    return recorded(folder, list(log_of(WHOLE.track, BEGIN_NS, feedbacks)))
+    return recorded(folder, list(log_of(performed().track, BEGIN_NS, feedbacks)))
 
 
 @pytest.mark.parametrize("kind", [Format.TRC, Format.C3D, Format.BVH])
 def test_the_motion_of_a_lesson_is_what_was_recorded(tmp_path: Path, kind: Format, capsys: pytest.CaptureFixture[str]) -> None:
     export(with_attempts(tmp_path / "lessons"), tmp_path, None, Order(kind, tmp_path / "out", None, "P07"))
     back = read_motion(tmp_path / f"out/lesson.{kind}")
-    assert len(back) == len(WHOLE.track)
-    off_m = np.linalg.norm(back.joints_m - WHOLE.track.joints_m, axis=2)
+    assert len(back) == len(performed().track)
+    off_m = np.linalg.norm(back.joints_m - performed().track.joints_m, axis=2)
     assert off_m.max() < (0.03 if kind is Format.BVH else 2e-5)
     assert capsys.readouterr().out == f"{tmp_path}/out/lesson.{kind}: {len(back)} frames, 0:02, 2 attempts\n"
 
@@ -128,7 +127,7 @@ def test_every_format_is_written_with_its_attempts_and_nothing_else(tmp_path: Pa
 @pytest.mark.parametrize(("asked", "written"), [("", "B12"), ("P07", "P07")])
 def test_the_files_of_one_attempt_say_whose_it_was_unless_that_is_told(tmp_path: Path, asked: str, written: str) -> None:
     own = msgspec.structs.replace(feedback_of(BEGIN_NS, 2, 40, (4, 10, 20, 36)), pupil="B12")
-    lesson = recorded(tmp_path / "lessons", list(log_of(WHOLE.track, BEGIN_NS, (own,))))
+    lesson = recorded(tmp_path / "lessons", list(log_of(performed().track, BEGIN_NS, (own,))))
     export(lesson, tmp_path, None, Order(Format.TRC, tmp_path / "out", 1, asked))
     assert json.loads((tmp_path / "out/lesson-attempt1.trc.json").read_text())["pupil"] == written
 
@@ -136,7 +135,7 @@ def test_the_files_of_one_attempt_say_whose_it_was_unless_that_is_told(tmp_path:
 def test_one_attempt_is_cut_out_with_what_is_around_it(tmp_path: Path) -> None:
     export(with_attempts(tmp_path / "lessons"), tmp_path, None, Order(Format.TRC, tmp_path, 2, ""))
     back = read_motion(tmp_path / "lesson-attempt2.trc")
-    np.testing.assert_allclose(back.joints_m, WHOLE.track.joints_m[42:81], atol=2e-5)
+    np.testing.assert_allclose(back.joints_m, performed().track.joints_m[42:81], atol=2e-5)
     (attempt,) = json.loads((tmp_path / "lesson-attempt2.trc.json").read_text())["attempts"]
     assert attempt["keyframes_s"] == pytest.approx({"start": 2 / 30, "exertion": 8 / 30, "peak": 18 / 30, "end": 34 / 30}, abs=1e-6)
 
@@ -160,7 +159,7 @@ def test_of_one_attempt_only_its_own_frames_are_held_in_memory(tmp_path: Path) -
         told = recorded_feedbacks(lesson)
         (whole,) = stretches(lesson.parts(), FRAME_S, told)
         (part,) = stretches(lesson.parts(), FRAME_S, told, only=2)
-    assert (len(whole.track), [each.number for each in whole.attempts]) == (len(WHOLE.track), [1, 2])
+    assert (len(whole.track), [each.number for each in whole.attempts]) == (len(performed().track), [1, 2])
     assert (len(part.track), [each.number for each in part.attempts]) == (39, [2])
     np.testing.assert_array_equal(part.track.joints_m, whole.track.joints_m[42:81])
 
@@ -177,7 +176,7 @@ def test_with_one_attempt_so_much_around_it_is_held_as_is_asked_for(tmp_path: Pa
 
 def test_an_attempt_whose_motion_is_there_in_part_only_is_refused(tmp_path: Path) -> None:
     feedbacks = tuple(feedback_of(BEGIN_NS, *frames) for frames in ((2, 40, (4, 10, 20, 36)), (42, 80, (44, 50, 60, 76))))
-    log = list(log_of(WHOLE.track, BEGIN_NS, feedbacks))
+    log = list(log_of(performed().track, BEGIN_NS, feedbacks))
     file = recorded(tmp_path / "lessons", log[: 2 * 60] + log[-2:])
     assert "of attempt 2 of lesson" in refusal(file, tmp_path / "out", 2)
     assert "has no attempt 3; it has 1-2" in refusal(file, tmp_path / "out", 3)
@@ -191,7 +190,7 @@ def test_each_stretch_between_gaps_becomes_a_file_and_those_with_nobody_none(
     last = moving(3, 20)
     file = recorded(
         tmp_path / "lessons",
-        list(log_of(WHOLE.track, BEGIN_NS)),
+        list(log_of(performed().track, BEGIN_NS)),
         list(log_of(NOBODY, later_ns)),
         list(log_of(last, later_ns + SECOND_NS)),
     )
@@ -218,12 +217,12 @@ def test_why_a_lesson_without_a_gap_becomes_several_files_is_said(tmp_path: Path
 
 
 def test_frames_that_are_missing_are_unknown_and_time_goes_on(tmp_path: Path) -> None:
-    log = list(log_of(WHOLE.track, BEGIN_NS))
+    log = list(log_of(performed().track, BEGIN_NS))
     export(recorded(tmp_path, log[:40] + log[60:]), tmp_path, None, Order(Format.C3D, tmp_path, None, ""))
     back = read_motion(tmp_path / "lesson.c3d")
-    assert len(back) == len(WHOLE.track)
+    assert len(back) == len(performed().track)
     assert (back.states[20:30] == JointState.UNKNOWN).all()
-    np.testing.assert_allclose(back.joints_m[30:], WHOLE.track.joints_m[30:], atol=1e-6)
+    np.testing.assert_allclose(back.joints_m[30:], performed().track.joints_m[30:], atol=1e-6)
 
 
 def refusal(file: Path, out: Path, attempt: int | None = None, kind: Format = Format.TRC) -> str:
@@ -238,14 +237,14 @@ def refusal(file: Path, out: Path, attempt: int | None = None, kind: Format = Fo
 @pytest.mark.slow
 def test_an_attempt_that_is_not_there_is_refused_with_those_that_are(tmp_path: Path) -> None:
     assert "has no attempt 3; it has 1-2" in refusal(with_attempts(tmp_path / "a"), tmp_path / "out", 3)
-    still = known_track(np.repeat(WHOLE.track.joints_m[:1], 90, axis=0), FRAME_S, 0.01)
+    still = known_track(np.repeat(performed().track.joints_m[:1], 90, axis=0), FRAME_S, 0.01)
     without = recorded(tmp_path / "b", list(log_of(still, BEGIN_NS)))
     assert f"lesson {without} holds no attempts" in refusal(without, tmp_path / "out", 1)
 
 
 def tried_once() -> Track:
     """Somebody who waits, tries, and waits."""
-    joints = WHOLE.track.joints_m
+    joints = performed().track.joints_m
     waiting = np.concatenate([np.repeat(joints[:1], 60, axis=0), joints, np.repeat(joints[-1:], 60, axis=0)])
     return known_track(waiting + np.random.default_rng(0).normal(0, 0.002, waiting.shape), FRAME_S, 0.01)
 
@@ -273,7 +272,7 @@ def test_in_a_lesson_in_which_no_attempt_was_told_it_is_looked_for(tmp_path: Pat
     first = read_motion(tmp_path / "out/lesson-attempt1.trc").joints_m[0]
     begin = int(np.argmin(np.abs(seen.joints_m - first).sum(axis=(1, 2))))
     peak_s = begin * FRAME_S + attempt["keyframes_s"]["peak"] - 60 * FRAME_S
-    assert peak_s == pytest.approx(WHOLE.attempts[0].moments_s[2], abs=0.1)
+    assert peak_s == pytest.approx(performed().attempts[0].moments_s[2], abs=0.1)
 
 
 def test_lessons_with_nothing_to_export_are_refused(tmp_path: Path) -> None:
@@ -290,16 +289,16 @@ def test_a_damaged_lesson_is_refused_and_nothing_is_written(tmp_path: Path) -> N
 
 
 def test_motion_off_its_grid_is_refused(tmp_path: Path) -> None:
-    log = list(log_of(WHOLE.track, BEGIN_NS))
+    log = list(log_of(performed().track, BEGIN_NS))
     late = msgspec.structs.replace(codec.decode(log[21].payload, Motion), t_ns=BEGIN_NS + 350_000_000)
     log[21] = Entry("motion", late.t_ns, codec.encode(late))
     assert "not as fusion makes it" in refusal(recorded(tmp_path, log), tmp_path / "out")
 
 
 def test_bones_without_hips_are_refused_by_the_lessons_name_and_trc_is_advised(tmp_path: Path) -> None:
-    states = WHOLE.track.states.copy()
+    states = performed().track.states.copy()
     states[:, 11] = JointState.UNKNOWN
-    track = Track(WHOLE.track.t_s, WHOLE.track.joints_m, WHOLE.track.covariance_m2, states)
+    track = Track(performed().track.t_s, performed().track.joints_m, performed().track.covariance_m2, states)
     file = recorded(tmp_path, list(log_of(track, BEGIN_NS)))
     told = refusal(file, tmp_path / "out", kind=Format.GLB)
     assert f"lesson of lesson {file} has no frame in which both hips" in told

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.stats import rankdata
 
 from models.arrays import Float
 from models.skeleton import coco
@@ -121,4 +120,6 @@ def _steady(errors: Errors) -> Float:
 def _rank_correlation(one: Float, other: Float) -> float:
     if len(one) < 3 or np.ptp(one) == 0 or np.ptp(other) == 0:
         return float("nan")
+    from scipy.stats import rankdata  # noqa: PLC0415 - a fifth of a second, and every process of pytest imports this module
+
     return float(np.corrcoef(rankdata(one), rankdata(other))[0, 1])

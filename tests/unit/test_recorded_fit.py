@@ -15,7 +15,7 @@ from models.motions.recorded.marker_spots import landmarks_of, spot_of
 from models.motions.recorded.markers import LONGEST_GAP_S, Markers
 from models.motions.recorded.replay import motion_of
 from models.skeleton import smpl
-from tests.bodies import LARGE, body_model, prior_of
+from tests.bodies import LARGE, SMALL, body_model, prior_of
 
 PLUG_IN_GAIT = (
     *(f"{side}{name}" for side in "LR" for name in ("ASI", "PSI", "THI", "KNE", "TIB", "ANK", "HEE", "TOE", "SHO", "FHD", "BHD")),
@@ -70,9 +70,10 @@ def joint_errors_m(found: MarkerFit, body: Body, poses: list[Pose]) -> Float:
     return np.asarray(np.linalg.norm(np.array(theirs) - [body.joints_m(pose) for pose in poses], axis=-1))
 
 
-@pytest.mark.parametrize("model", [body_model(), pytest.param(body_model(LARGE), marks=pytest.mark.slow)], ids=("small", "large"))
+@pytest.mark.parametrize("size", [SMALL, pytest.param(LARGE, marks=pytest.mark.slow)], ids=("small", "large"))
 @pytest.mark.parametrize("names", [PLUG_IN_GAIT, OPENCAP], ids=("plug_in_gait", "opencap"))
-def test_every_marker_of_a_set_is_known_and_on_the_skin_of_its_side(model, names) -> None:  # type: ignore[no-untyped-def]
+def test_every_marker_of_a_set_is_known_and_on_the_skin_of_its_side(size: str, names: tuple[str, ...]) -> None:
+    model = body_model(size)
     body = model.shaped(prior_of(model).likely(25, "male").mean)
     spots = [spot_of(name) for name in names]
     assert None not in spots
