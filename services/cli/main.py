@@ -2,7 +2,6 @@
 
 import os
 import sys
-from importlib.metadata import version as installed_version
 from pathlib import Path
 from typing import Annotated
 
@@ -47,7 +46,9 @@ def main() -> None:
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        typer.echo(installed_version("kinebox"))
+        from services.support.version import kinebox_version  # noqa: PLC0415
+
+        typer.echo(kinebox_version())
         raise typer.Exit
 
 
