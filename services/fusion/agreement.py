@@ -30,7 +30,7 @@ PERIOD_S = 0.25
 NEEDED, KEPT = 24, 40
 """Comparisons before a pair is said to agree; and before it is said not to, which accuses somebody: those that it is judged by."""
 _AT_IT_S = 10.0
-"""A pair that was compared within so long is likely to be decided soon, and is waited for."""
+"""A pair that has not been compared `KEPT` times, but was within so long, soon will have been, and is waited for."""
 _MAX_GAP_S = 0.35
 
 
@@ -47,7 +47,7 @@ class _Comparisons:
         self._couples = couple if self._couples is None else self._couples.and_then(couple, KEPT)
 
     def agree(self) -> bool | None:
-        """Whether the two cameras do; None as long as there is too little to tell."""
+        """Whether the two cameras do; None as long as there is too little to tell, or if they do only now and then."""
         if len(self.distances) < NEEDED:
             return None
         if statistics.median(self.distances) < TOLERANCE:
@@ -145,11 +145,18 @@ class Agreement:
         return Disagreement(tuple(names[i] for i in strangers), tuple((names[a], names[b]) for a, b in exchanged), tied)
 
     def _is_at_it(self, groups: list[set[int]], judged: Mapping[tuple[int, int], bool]) -> bool:
-        """Whether two groups are being compared by a pair that is yet to be judged, and may turn out to be one."""
+        """Whether two groups are being compared by a pair that is yet to be judged, and may turn out to be one.
+
+        Of a pair that was compared often enough, and agrees only now and then, no more is to be expected: a camera that was turned
+        can fit beside one other for as long as the pupil stands where he does.
+        """
         group_of = {camera: number for number, group in enumerate(groups) for camera in group}
         newest_s = max(self._looked_s.values())
         return any(
-            pair not in judged and newest_s - t_s < _AT_IT_S and len({group_of.get(camera) for camera in pair} - {None}) == 2
+            pair not in judged
+            and len(self._compared[pair].distances) < KEPT
+            and newest_s - t_s < _AT_IT_S
+            and len({group_of.get(camera) for camera in pair} - {None}) == 2
             for pair, t_s in self._compared_s.items()
         )
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from models.camera.rig import Rig
 from models.messages.observation import Observation
@@ -70,6 +71,23 @@ def test_a_camera_that_was_turned_is_named_alone() -> None:
     assert found.strangers == ("cam2",)
     assert found.exchanged == ()
     assert (found.trouble.code, found.trouble.words) == ("camera_moved", "cam2 does not agree with the calibration")
+
+
+def turned_in_the_plane_of(rig: Rig, index: int, other: int, angle: float) -> Rig:
+    """The same, but turned so that what the camera sees moves along the lines that another one's points draw in its picture."""
+    camera = rig.cameras[index]
+    axis = np.cross(np.array((0.0, 0.0, 1.0)) - camera.centre_m, rig.cameras[other].centre_m - camera.centre_m)
+    rotation = camera.rotation @ Rotation.from_rotvec(angle * axis / np.linalg.norm(axis)).as_matrix()
+    moved = replace(camera, rotation=rotation, translation_m=-rotation @ camera.centre_m)
+    return Rig((*rig.cameras[:index], moved, *rig.cameras[index + 1 :]))
+
+
+def test_a_camera_that_was_turned_is_named_also_if_beside_one_other_it_fits_now_and_then() -> None:
+    gym = Gym(seconds=SECONDS)
+    found = told(turned_in_the_plane_of(gym.rig, 2, 0, 0.05), gym)
+    assert found is not None
+    assert found.strangers == ("cam2",)
+    assert found.trouble.code == "camera_moved"
 
 
 def test_two_cameras_that_never_see_the_same_person_do_not_keep_a_camera_from_being_named() -> None:
