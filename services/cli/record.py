@@ -8,7 +8,7 @@ import typer
 
 from models.config.site import Site
 from models.errors import UserError
-from models.messages.health import RecorderHealth
+from models.messages.health import Health, RecorderHealth
 from services.cli.duration import clock
 from services.cli.progress import ProgressLine
 from services.lesson.layout import SUFFIX
@@ -31,7 +31,8 @@ def record(site: Site, data: Path, title: str, seconds: float | None) -> None:
         seconds: how long it shall be; None until it is ended.
 
     Raises:
-        UserError: no box or recorder is there, it cannot record, the lesson ended by itself, or nothing is heard of it any more.
+        UserError: no box or recorder is there, it cannot record, the lesson ended by itself, the recorder was given up, or
+            nothing is heard of it any more.
     """
     require_title(title)
     stop = stop_on_signals()
@@ -74,7 +75,7 @@ def _watch(remote: Remote, lesson: str, seconds: float | None, stop: Event) -> R
     """Show how the lesson goes. None if it shall be ended now; its last known state if it was ended by others.
 
     Raises:
-        UserError: the lesson ended by itself, or nobody is left to record it.
+        UserError: the lesson ended by itself, or nobody is left to record it. A recorder that is tried again is waited for.
     """
     last: RecorderHealth | None = None
     heard_s = time.monotonic()
@@ -82,8 +83,10 @@ def _watch(remote: Remote, lesson: str, seconds: float | None, stop: Event) -> R
         while not stop.is_set():
             health = remote.listen(_ROUND_S)
             now_s = time.monotonic()
+            if health is not None:
+                heard_s = now_s  # The supervisor says why there is no recorder, in its name.
+                _require_not_given_up(health, lesson)
             if health is not None and health.recorder is not None:
-                heard_s = now_s
                 if health.recorder.lesson != lesson:
                     if refused(health):
                         raise UserError(health.reason)
@@ -93,14 +96,22 @@ def _watch(remote: Remote, lesson: str, seconds: float | None, stop: Event) -> R
                 return None
             reason = remote.newest.reason if remote.newest is not None else ""
             if now_s - heard_s > GONE_AFTER_S:
-                raise UserError(
-                    f"nothing was heard of the recorder for {GONE_AFTER_S:g} s; 'kinebox doctor' says what is wrong. What lesson "
-                    f"{lesson} has is kept, and finished when the box is started again with 'kinebox run'"
-                )
+                words = f"nothing was heard of the recorder for {GONE_AFTER_S:g} s; 'kinebox doctor' says what is wrong"
+                raise UserError(f"{words}. {_kept(lesson)}")
             if now_s - heard_s > _SILENT_S:
                 reason = "nothing is heard of the recorder"
             progress.show(_line(last, reason))
     return None
+
+
+def _require_not_given_up(health: Health, lesson: str) -> None:
+    if any(trouble.code == "given_up" for trouble in health.troubles):
+        raise UserError(f"the recorder is given up: {health.reason}. {_kept(lesson)}")
+
+
+def _kept(lesson: str) -> str:
+    """What becomes of a lesson that nobody is left to record."""
+    return f"What lesson {lesson} has is kept, and finished when the box is started again with 'kinebox run'"
 
 
 def _line(recorder: RecorderHealth | None, reason: str) -> str:

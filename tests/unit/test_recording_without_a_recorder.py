@@ -1,21 +1,26 @@
 """Who stays with a lesson is told when nobody is left to record it, and does not wait for ever."""
 
 import threading
+import time
 from pathlib import Path
+from typing import ClassVar
 
 import pytest
 
 from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.health import Health, RecorderHealth
+from models.messages.trouble import Trouble
 from models.process import Bus
 from services.bus.memory import MemoryRouter
 from services.cli import record as recording
+from services.cli.progress import ProgressLine
 from services.supervisor.policy import LONGEST_WAIT_S
 from services.supervisor.silence import START_LIMIT_S
 from tests.integration.fusion_room import SITE
 
 LESSON = "2026-11-23-7b"
+READ_ONLY = "lessons cannot be written: Read-only file system; correct its permissions"
 
 
 def said(lesson: str, recorded_s: float) -> bytes:
@@ -45,6 +50,74 @@ def test_a_box_that_died_ends_the_command_with_what_becomes_of_the_lesson(
     words = rf"^nothing was heard of the recorder for 0\.6 s; .* lesson {LESSON} has is kept, and finished .* 'kinebox run'$"
     with pytest.raises(UserError, match=words):
         recording.record(SITE, tmp_path, "", seconds)
+    thread.join()
+    box.close()
+    assert "recorded " not in capsys.readouterr().out
+
+
+def instead(trouble: Trouble) -> bytes:
+    """What the supervisor says in the recorder's place."""
+    return codec.encode(Health("recorder", 2, 6, "failed", (trouble,), 0.0, 0.0))
+
+
+def refuse_and_return(box: Bus) -> None:
+    """A recorder whose disk is read-only for longer than nobody may be heard of it, and who then ends the lesson."""
+    record_and_die(box)
+    for _ in range(8):
+        time.sleep(0.2)
+        box.publish(topics.health("recorder"), instead(Trouble("restarting", f"{READ_ONLY}; it is tried again")))
+    box.publish(topics.health("recorder"), said("", 0.0))
+
+
+class Shown(ProgressLine):
+    """Keeps every line that somebody who watches would see."""
+
+    lines: ClassVar[list[str]] = []
+
+    def show(self, line: str) -> None:
+        self.lines.append(line)
+
+
+def test_a_recorder_that_is_tried_again_is_waited_for_and_why_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    router = MemoryRouter()
+    box, asks = router.open(), router.open()
+    monkeypatch.setattr(recording, "join", lambda _: asks)
+    monkeypatch.setattr(recording, "GONE_AFTER_S", 1.2)
+    monkeypatch.setattr(recording, "_SILENT_S", 0.9)
+    monkeypatch.setattr(recording, "_ROUND_S", 0.05)
+    monkeypatch.setattr(recording, "stop_on_signals", threading.Event)
+    monkeypatch.setattr(recording, "ProgressLine", Shown)
+    monkeypatch.setattr(Shown, "lines", [])
+    thread = threading.Thread(target=refuse_and_return, args=(box,))
+    thread.start()
+    recording.record(SITE, tmp_path, "", None)
+    thread.join()
+    box.close()
+    assert f"recorded 0:01, 0.0 MB; {READ_ONLY}; it is tried again" in Shown.lines
+    assert not [line for line in Shown.lines if "nothing is heard" in line]
+    assert f"{LESSON}.mcap, 0:01" in capsys.readouterr().out
+
+
+@pytest.mark.timeout(20)
+def test_a_recorder_that_is_given_up_ends_the_command_at_once_with_the_reason(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    router = MemoryRouter()
+    box, asks = router.open(), router.open()
+    monkeypatch.setattr(recording, "join", lambda _: asks)
+    monkeypatch.setattr(recording, "stop_on_signals", threading.Event)
+
+    def give_up() -> None:
+        record_and_die(box)
+        box.publish(topics.health("recorder"), instead(Trouble("given_up", "it ended 5 times; last, it ended with exit code 1")))
+
+    thread = threading.Thread(target=give_up)
+    thread.start()
+    words = rf"^the recorder is given up: it ended 5 times; .* code 1\. What lesson {LESSON} has is kept, .* 'kinebox run'$"
+    with pytest.raises(UserError, match=words):
+        recording.record(SITE, tmp_path, "", None)
     thread.join()
     box.close()
     assert "recorded " not in capsys.readouterr().out
