@@ -119,7 +119,7 @@ def _all(found: list[Stretch], name: str, pupil: str, file: Path) -> list[Take]:
 def _why_several(found: list[Stretch]) -> str:
     """No figure is measured across a gap, nor across the end of a film that begins again."""
     gaps = found[-1].segment - found[0].segment
-    begun = len(found) - 1 - gaps
+    begun = len(found) - len({stretch.segment for stretch in found})  # A segment between two gaps may hold no motion.
     why = [f"its recording has {gaps} gap{'' if gaps == 1 else 's'}"] if gaps else []
     why += [f"its film or its cameras began anew {begun} time{'' if begun == 1 else 's'}"] if begun else []
     return f"note: the lesson is in {len(found)} pieces, each with its own time from 0: {', and '.join(why)}"

@@ -216,6 +216,27 @@ def test_why_a_lesson_without_a_gap_becomes_several_files_is_said(tmp_path: Path
     assert capsys.readouterr().err == told
 
 
+@pytest.mark.parametrize(
+    ("epochs", "why"),
+    [((0, 0), "its recording has 2 gaps"), ((0, 1), "its recording has 2 gaps, and its film or its cameras began anew 1 time")],
+    ids=["one film", "a film that began anew, too"],
+)
+def test_a_part_between_two_gaps_in_which_nothing_moved_is_not_counted_as_a_beginning(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], epochs: tuple[int, int], why: str
+) -> None:
+    track, later_ns = moving(3, 20), BEGIN_NS + 50 * SECOND_NS
+    still = [Entry("tick", later_ns, b"")]
+    motions = [
+        motion_of(track, frame, later_ns + (1 + 10 * epoch) * SECOND_NS, epoch)
+        for epoch in sorted(set(epochs))
+        for frame in range(20)
+    ]
+    last = [Entry("motion", motion.t_ns, codec.encode(motion)) for motion in motions]
+    export(recorded(tmp_path, list(log_of(track, BEGIN_NS)), still, last), tmp_path, None, Order(Format.C3D, tmp_path / "out"))
+    told = f"note: the lesson is in {1 + len(set(epochs))} pieces, each with its own time from 0"
+    assert capsys.readouterr().err == f"{told}: {why}\n"
+
+
 def test_frames_that_are_missing_are_unknown_and_time_goes_on(tmp_path: Path) -> None:
     log = list(log_of(performed().track, BEGIN_NS))
     export(recorded(tmp_path, log[:40] + log[60:]), tmp_path, None, Order(Format.C3D, tmp_path, None, ""))
