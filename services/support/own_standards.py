@@ -126,8 +126,8 @@ class OwnStandards:
     def is_counting(self, action: str, kept: Kept) -> bool:
         """Whether one that counted before counts again: whether it is the same, whatever its number; not if it cannot be read."""
         try:
-            return _content(self.file(action)) == _content(kept.file)
-        except OSError:
+            return _read(self.file(action)) == _read(kept.file)
+        except UserError:
             return False
 
     def _all_kept(self) -> Iterator[tuple[Path, "re.Match[str]"]]:
@@ -153,7 +153,7 @@ class OwnStandards:
             if chosen.read().action != action:
                 raise UserError(f"standard {chosen.file} is of another action; move it away, and name another version")
             with self._kept_before(action):
-                write_over(self.file(action), _content(chosen.file))
+                write_over(self.file(action), _read(chosen.file))
             sync_folder(self.folder)
 
     def bring_back_shipped(self, action: str) -> None:
@@ -194,16 +194,16 @@ class OwnStandards:
     def _keep(self, action: str) -> _Copy:
         """Copy what counts to the versions, unless it is there already."""
         file = self.file(action)
-        if not file.exists():
+        if not file.exists() or _holds_nothing(file):
             return _Copy()
-        data, number = _content(file), None
+        data, number = _read(file), None
         try:
             standard = _standard(data, file)
         except UserError:
             copy = self._free(data, f"{action}-{_UNREADABLE}")
         else:
             copy = self._version(action, standard.version)
-            if copy.exists() and _content(copy) != data:
+            if copy.exists() and _read(copy) != data:
                 # A file that somebody brought has the number of another one.
                 standard = replace(standard, version=self._next(action))
                 copy, data = self._version(action, standard.version), encode(standard)
@@ -232,7 +232,7 @@ class OwnStandards:
         """A name that no file has; None if one has this content."""
         number = 1
         while (file := self._versions / f"{name}-{number}{STANDARD_SUFFIX}").exists():
-            if _content(file) == data:
+            if _read(file) == data:
                 return None
             number += 1
         return file
@@ -297,14 +297,15 @@ def _files(folder: Path) -> list[Path]:
         raise UserError(f"{folder} cannot be read: {error.strerror}; correct its permissions") from error
 
 
-def _content(file: Path) -> bytes:
-    require_text(file.stat())
-    return file.read_bytes()
+def _holds_nothing(file: Path) -> bool:
+    """Whether it is a pipe or a device, of which nothing can be kept."""
+    return not file.is_file() and not file.is_dir()
 
 
 def _read(file: Path) -> bytes:
     try:
-        return _content(file)
+        require_text(file.stat())
+        return file.read_bytes()
     except OSError as error:
         raise UserError(f"{file} cannot be read: {error.strerror}; correct its permissions, or remove it") from error
 

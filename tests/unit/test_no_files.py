@@ -16,6 +16,7 @@ from services.lesson.lesson_reader import open_lesson
 from services.site_file.reading import read_file
 from services.support.own_standards import OwnStandards
 from services.support.teaching_files import load_standards, load_teachings
+from tests.unit.test_own_standards import SQUAT, named
 
 pytestmark = pytest.mark.timeout(20)
 
@@ -62,6 +63,63 @@ def test_a_file_that_is_too_large_for_its_kind_is_not_read(tmp_path: Path, reade
         film.truncate(MOST_TEXT_BYTES + 1_000_000)
     with pytest.raises(UserError, match=rf"{file.name} cannot be read.*it has 11 MB, and such a file at most 10.*; correct "):
         read(tmp_path)
+
+
+CHANGES: dict[str, tuple[Callable[[OwnStandards], object], str]] = {
+    "restore shipped": (lambda own: own.bring_back_shipped("squat"), SQUAT.origin),
+    "restore 2": (lambda own: own.bring_back("squat", 2), "first"),
+    "a new one": (lambda own: own.put(named("third")), "third"),
+}
+
+
+def school(folder: Path) -> OwnStandards:
+    """A school whose own standard was replaced once: version 3 counts, and version 2 is kept."""
+    own = OwnStandards(folder)
+    own.put(named("first"))
+    own.put(named("second"))
+    return own
+
+
+@pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.parametrize("kind", ["pipe", "device"])
+def test_a_pipe_in_the_place_of_the_standard_that_counts_gives_way_to_another(tmp_path: Path, kind: str, change: str) -> None:
+    own, (make, origin) = school(tmp_path), CHANGES[change]
+    own.file("squat").unlink()
+    if kind == "pipe":
+        os.mkfifo(own.file("squat"))
+    else:
+        own.file("squat").symlink_to("/dev/zero")
+    make(own)
+    assert own.counts("squat").origin == origin
+    assert [one.read().origin for one in own.kept("squat")] == ["first"]
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_a_standard_that_is_too_large_to_be_kept_is_named_and_not_its_folder(tmp_path: Path, change: str) -> None:
+    own, (make, _) = school(tmp_path), CHANGES[change]
+    with own.file("squat").open("r+b") as film:
+        film.truncate(MOST_TEXT_BYTES + 1_000_000)
+    with pytest.raises(UserError, match=r"standards/squat\.npz cannot be read: it has 11 MB, .*; correct .*, or remove it$"):
+        make(own)
+    assert own.file("squat").stat().st_size > MOST_TEXT_BYTES
+    assert [one.number for one in own.kept("squat")] == [2]
+
+
+@pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.parametrize(("counting", "taken"), [("good", "squat-3.npz"), ("damaged", "squat-unreadable-1.npz")])
+def test_a_pipe_where_the_standard_that_counts_would_be_kept_is_named(
+    tmp_path: Path, counting: str, taken: str, change: str
+) -> None:
+    own, (make, _) = school(tmp_path), CHANGES[change]
+    if counting == "damaged":
+        own.file("squat").write_bytes(b"damaged")
+    before = own.file("squat").read_bytes()
+    os.mkfifo(own.folder / "versions" / taken)
+    with pytest.raises(
+        UserError, match=rf"versions/{taken} cannot be read: it is a pipe or a device, .*; correct .*, or remove it$"
+    ):
+        make(own)
+    assert own.file("squat").read_bytes() == before
 
 
 @pytest.mark.parametrize("name", ["7b.mcap", "7b.mcap.part"])
