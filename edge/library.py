@@ -1,8 +1,8 @@
 """The networks of an edge process: both pose networks are loaded before the first picture.
 
 The smaller is asked for when a machine has too much to do, which is the wrong moment to load it; and 20 MB more by the camera
-would look like a leak. The first must be there. Another that cannot be loaded is reported, and while it is asked for it is tried
-again now and then, beside the loop, which goes on with the one that it has.
+would look like a leak. The first must be there. Another that cannot be loaded is reported, and it is tried again now and then,
+beside the loop, which goes on with the one that it has.
 """
 
 import threading
@@ -14,6 +14,7 @@ from edge.observe import PersonDetector, PoseEstimator
 from models.errors import UserError
 from models.messages.control import PoseNetwork as PoseNetworkName
 
+_NAMES: tuple[PoseNetworkName, ...] = get_args(PoseNetworkName)
 RETRY_NS = 10_000_000_000
 """Reading and hashing a file costs what a few poses cost; a missing one shall not cost that with every picture."""
 
@@ -44,7 +45,7 @@ class Library:
         self._loading: dict[str, threading.Thread] = {}
         self._problems: dict[str, str] = {}
         self._t_failed_ns: dict[str, int] = {}
-        for name in get_args(PoseNetworkName):
+        for name in _NAMES:
             if name != first:
                 self._load(name)
 
@@ -55,16 +56,18 @@ class Library:
 
     @property
     def problem(self) -> str:
-        """Why a network that was asked for is not there; empty if all is well."""
+        """Why a network is not there; empty if all are."""
         return "; ".join(self._problems.values())
 
     def pose(self, name: PoseNetworkName) -> PoseEstimator:
         """The pose network of that name; until it is loaded, and if it cannot be, the one that ran last."""
         if name in self._poses:
             self._current = name
-        elif name not in self._loading and self._may_try(name):
-            self._loading[name] = threading.Thread(target=self._load_beside, args=(name,), name=f"load-{name}", daemon=True)
-            self._loading[name].start()
+        for missing in _NAMES:
+            if missing not in self._poses and missing not in self._loading and self._may_try(missing):
+                thread = threading.Thread(target=self._load_beside, args=(missing,), name=f"load-{missing}", daemon=True)
+                self._loading[missing] = thread
+                thread.start()
         return self._poses[self._current]
 
     def detector(self) -> PersonDetector:

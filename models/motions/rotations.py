@@ -45,9 +45,15 @@ def quaternions(rotations: Float) -> Float:
 
 def about(axis: int, angle: Float) -> Float:
     """(..., 3, 3) turns about x (0), y (1) or z (2)."""
-    vector = np.zeros((*np.shape(angle), 3))
-    vector[..., axis] = angle
-    return matrices(vector)
+    # `matrices` of an axis along x, y or z, written out: motions are made of a thousand of these each.
+    angle = np.asarray(angle, np.float64)
+    sine, cosine = np.sin(angle), np.cos(angle)
+    turns = np.zeros((*angle.shape, 3, 3))
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    turns[..., axis, axis] = 1.0
+    turns[..., first, first] = turns[..., second, second] = cosine
+    turns[..., second, first], turns[..., first, second] = sine, -sine
+    return turns
 
 
 def unit(vector: Float) -> Float:

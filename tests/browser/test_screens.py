@@ -20,7 +20,7 @@ FAULTY = """() => {
     const labels = '.activity strong, .activity small, .pupil strong, .pupil small, .pill, .opener, .title, .back, .legend li, '
         + '.tools button, .group button, .anew, dialog[open] form button, dialog[open] li button';
     const leaves = (e) => {
-        const room = e.closest('.stage, button, dialog, main, header').getBoundingClientRect();
+        const room = e.parentElement.closest('.stage, button, dialog, main, header').getBoundingClientRect();
         const own = e.getBoundingClientRect();
         return own.left < room.left - 1 || own.right > room.right + 1;
     };

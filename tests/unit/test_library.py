@@ -73,6 +73,23 @@ class StoppedClock:
         self.t_ns = t_ns
 
 
+def test_a_network_that_nobody_asks_for_is_tried_again_too_so_that_its_failure_is_not_reported_for_ever() -> None:
+    attempts: list[PoseNetworkName] = []
+
+    def load(name: PoseNetworkName) -> FakePose:
+        attempts.append(name)
+        if attempts.count("lightning") == 1 and name == "lightning":
+            raise UserError("network movenet-lightning is damaged")
+        return FakePose(name)
+
+    clock = StoppedClock()
+    library = Library(load, FakeDetector, "thunder", clock)
+    clock.t_ns = RETRY_NS
+    assert library.pose("thunder").name == "thunder"
+    wait_for(lambda: library.problem == "")
+    assert library.current == "thunder"
+
+
 def test_any_failure_is_reported_in_one_line_and_tried_again_after_a_while() -> None:
     attempts: list[PoseNetworkName] = []
 
