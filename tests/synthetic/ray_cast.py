@@ -14,6 +14,7 @@ from models.camera.pinhole import Camera
 
 _NEWTON_STEPS = 25
 _NUDGE = 1e-6
+_SAME_PX = 1e-9
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,8 @@ def ray(camera: Camera, pixel: Float) -> Float:
 
     for _ in range(_NEWTON_STEPS):
         here = seen(normalised)
+        if np.abs(pixel - here).max() < _SAME_PX:
+            break
         slope = np.column_stack([(seen(normalised + step) - here) / _NUDGE for step in np.eye(2) * _NUDGE])
         normalised = normalised + np.linalg.solve(slope, pixel - here)
     assert np.allclose(seen(normalised), pixel, atol=1e-6), f"no ray found for {pixel}"
