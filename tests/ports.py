@@ -1,5 +1,6 @@
 """Ports for the servers of tests: one that is given to a test is no other test's, and no client's."""
 
+import atexit
 import itertools
 import os
 import socket
@@ -13,7 +14,6 @@ if BEFORE_CLIENTS - FIRST < 5_000:
         f"clients get ports from {BEFORE_CLIENTS} on (net.ipv4.ip_local_port_range): tests need 12000 to 17000 for servers"
     )
 
-_claims: list[socket.socket] = []
 _candidates = itertools.count(os.getpid() * 97)  # processes begin far from each other
 
 
@@ -34,7 +34,7 @@ def _claimed(port: int) -> bool:
     except OSError:
         claim.close()
         return False
-    _claims.append(claim)
+    atexit.register(claim.close)  # until then it is held
     return True
 
 

@@ -5,7 +5,7 @@ to the next and forgets it within some frames. The *landmark* part is where the 
 the joint is: fusion cannot know of it, all cameras share it, and it changes only as the pose and the views do, over a second or so.
 Both are taken as normal, with a correlation over time that falls as exp(-(dt / time)^2 / 2): so that a difference over few frames,
 a speed or a range is not charged with what both its ends share. Of what moves fast the noise is larger along its way: shutters
-and the smoother put it some milliseconds beside its time.
+and the smoother put it some milliseconds beside its time (what the cameras missed between two looks is in fusion's covariance).
 
 Neighbours on the body are wrong in the same way, the more the nearer they are: hips are shifted together, an elbow takes its wrist
 along. So errors of joints are alike by exp(-distance / length) of where they are in the T-pose; that makes a trunk less sure, and
@@ -98,7 +98,7 @@ NETWORK: Final = Uncertainty(
     landmark_s=0.8,
     noise_scale=tuple(scale for _, scale in _OF_JOINTS),
     noise_s=0.06,
-    timing_s=0.008,
+    timing_s=0.005,
     moment_s=0.02,
 )
 """Of what the box reconstructs."""

@@ -147,6 +147,8 @@ class SmoothingConfig:
         robust_sigmas: as in triangulation.
         recapture_views: by how many views fewer must object to a triangulated position than to the smoother's for it to go on from
             there; infinite is never.
+        between_looks: share of the way that a joint makes from one look at it to the next, of all cameras together, by which it is
+            unsure along that way.
         limb_sigma: one sigma of a limb's length as a share of it (eq. 16); infinite switches the term off.
         limb_samples: instants over which a limb's length is estimated.
     """
@@ -160,6 +162,7 @@ class SmoothingConfig:
     iterations: int = 1
     robust_sigmas: float = 3.0
     recapture_views: float = 0.5
+    between_looks: float = 0.5
     limb_sigma: float = 0.03
     limb_samples: int = 90
 
@@ -190,10 +193,10 @@ class FusionConfig:
 
 def _paper() -> FusionConfig:
     """Eq. 8 as printed: second difference, distal joints smoothed most; no limb-length residual on joints that are seen, nothing
-    caught again."""
+    caught again, and no word of what happened between the pictures."""
     gamma = by_distance_from_trunk(0.020, 0.011, 0.006)
     never = float("inf")
-    smoothing = SmoothingConfig(order=2, difference_m=gamma, limb_sigma=never, recapture_views=never)
+    smoothing = SmoothingConfig(order=2, difference_m=gamma, limb_sigma=never, recapture_views=never, between_looks=0.0)
     return replace(FusionConfig(preset="paper"), smoothing=smoothing)
 
 

@@ -4,8 +4,10 @@ import numpy as np
 
 from models.arrays import Bool, Float, UInt32
 from models.compiled import Counts
+from models.messages.motion import JointState
 from models.skeleton import coco
 from services.fusion.association import Familiar, agreement, pick_pupil
+from services.fusion.between_looks import gaps_s, unsure_m2
 from services.fusion.body_filter import BodyFilter, centre_in_picture
 from services.fusion.config import FusionConfig
 from services.fusion.history import FilterHistory, Seed
@@ -158,22 +160,29 @@ class PersonEstimates:
         """
         self._reach(now_s, config)
         self._recapture(config)
-        smooth_s = np.array(grid) * config.frame_s
+        instants_s = np.append(np.array(grid) * config.frame_s, live_s)
         memory_s = config.filter.view_memory_s
         memories = np.append(np.full(len(grid), 0.5 * memory_s), memory_s)
-        smoothed = self._smoother.step(self._tracks, self._views, self._limbs, np.append(smooth_s, live_s), memories)
+        smoothed = self._smoother.step(self._tracks, self._views, self._limbs, instants_s, memories)
         *smooth, live = (
-            self._pose(t, points, covariance, views, last, config)
-            for t, points, covariance, views, last in zip(
-                (*smooth_s, live_s),
+            self._pose(t, points, covariance, unsure, views, last, config)
+            for t, points, covariance, unsure, views, last in zip(
+                instants_s,
                 smoothed.points_m,
                 smoothed.covariance_m2,
+                self._between_looks_m2(instants_s, config),
                 smoothed.views,
                 (*[self._smooth_agreed_s] * len(grid), self._live_agreed_s),
                 strict=True,
             )
         )
         return live, smooth
+
+    def _between_looks_m2(self, instants_s: Float, config: FusionConfig) -> Float:
+        """(n, 17, 3, 3) how unsure joints are at n instants because of what happened between the looks."""
+        newest_s = max(self._tracks.newest_s(camera) for camera in range(len(self._views)))
+        gaps = gaps_s(self._tracks, self._smoother.first * config.frame_s, newest_s)
+        return unsure_m2(self._smoother.velocities_m_s(instants_s), config.smoothing.between_looks * gaps)
 
     def _reach(self, now_s: float, config: FusionConfig) -> None:
         """Move the window on until its end is beyond `now_s`, and let the filters foresee what no picture holds yet."""
@@ -207,14 +216,27 @@ class PersonEstimates:
         return fresh
 
     def _pose(
-        self, t_s: float, points_m: Float, covariance_m2: Float, views: UInt32, agreed_s: Float, config: FusionConfig
+        self,
+        t_s: float,
+        points_m: Float,
+        covariance_m2: Float,
+        between_m2: Float,
+        views: UInt32,
+        agreed_s: Float,
+        config: FusionConfig,
     ) -> Pose:
-        """States from how many views agree now, and from when two last did (`agreed_s`, kept up to date here)."""
+        """States from how many views agree now, and from when two last did (`agreed_s`, kept up to date here).
+
+        That a joint moves makes it less sure (`between_m2`), and not less seen.
+        """
         # Before the first estimate nothing is known, however sure the window's end is.
         guess_s = config.filter.guess_s + 1e-9 if t_s >= self.since_s - config.frame_s else -np.inf
         lengths_m, _ = self._limbs.current()
         max_variance_m2 = config.filter.max_sigma_m**2
-        return Pose(*judge_joints(points_m, covariance_m2, views, agreed_s, t_s, guess_s, max_variance_m2, ENDS, lengths_m))
+        pose = Pose(*judge_joints(points_m, covariance_m2, views, agreed_s, t_s, guess_s, max_variance_m2, ENDS, lengths_m))
+        known = pose.states != JointState.UNKNOWN
+        pose.covariance_m2[known] += between_m2[known]
+        return pose
 
     def _doubt_sides(self, camera: int, t_s: float, swapped: Bool) -> None:
         """If most cameras keep having to be repaired, it is the estimate whose left is right."""

@@ -106,6 +106,13 @@ class Smoother:
         positions: Float = self.positions_m[index - self.first].T.copy()
         return positions
 
+    def velocities_m_s(self, instants_s: Float) -> Float:
+        """(n, 17, 3) at n instants, by the positions before and after each; beyond the window, as at its end."""
+        knots = np.rint(instants_s / self._frame_s).astype(np.int64) - self.first
+        middle = np.clip(knots, 1, self._config.knots - 2)
+        way: Float = (self.positions_m[middle + 1] - self.positions_m[middle - 1]).swapaxes(1, 2)
+        return way / (2 * self._frame_s)
+
     def move(self, index: int, points_m: Float, which: Bool) -> None:
         """Take the flagged joints (17,) to be at these (17, 3) at a grid instant within the window."""
         np.copyto(self.positions_m[index - self.first], points_m.T, where=which)

@@ -15,4 +15,4 @@ def test_a_turn_about_an_axis_is_that_of_a_rotation_vector_along_it(axis: int, a
 
 @given(st.integers(0, 2), st.floats(-20, 20))
 def test_one_angle_gives_one_matrix(axis: int, angle: float) -> None:
-    np.testing.assert_allclose(about(axis, np.float64(angle)), matrices(angle * np.eye(3)[axis]), atol=1e-12)
+    np.testing.assert_allclose(about(axis, np.array(angle)), matrices(angle * np.eye(3)[axis]), atol=1e-12)

@@ -40,8 +40,8 @@ class Curve:
     Attributes:
         signal, side: which angle.
         t_s: (T,) seconds from the attempt's start.
-        pupil_deg: (T,) NaN where it was not seen, or is less sure than the tolerance; of an angle that goes round, within half a turn
-            of the standard.
+        pupil_deg: (T,) NaN where it was not seen, or is less sure than the tolerance; of an angle that goes round, within half a
+            turn of the standard.
         sigma_deg: one standard deviation of it, as it is in the middle of the frames.
         standard_deg: (T,) along the alignment; NaN where unknown.
         tolerance_deg: how far from the standard is as good: half of the way from good to fault, where a teacher begins to correct;
