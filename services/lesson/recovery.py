@@ -41,6 +41,9 @@ def recover(folder: Path, run_ns: int) -> LessonWriter | None:
         if not is_readable(path.name):
             log.warning("an unfinished lesson waits for a name in UTF-8", lesson=readable(path.name), remedy="rename the file")
             continue
+        if not path.is_file():
+            log.warning("what has an unfinished lesson's name is no file", lesson=path.name, remedy="remove it")
+            continue
         try:
             writer = _reopened(path)
         except OSError as error:

@@ -321,6 +321,21 @@ def test_an_unfinished_lesson_whose_name_is_no_text_stays_and_stops_nobody(tmp_p
     assert (tmp_path / "a.mcap").is_file()
 
 
+def test_a_pipe_with_the_name_of_an_unfinished_lesson_stays_and_stops_nobody(tmp_path: Path) -> None:
+    pipe, folder = tmp_path / f"a{PART_SUFFIX}", tmp_path / f"b{PART_SUFFIX}"
+    os.mkfifo(pipe)
+    folder.mkdir()
+    writer = LessonWriter.create(tmp_path, "c", header())
+    writer.append(part(BEGIN_NS, 0))
+    writer.close()
+    with capture_logs() as logged:
+        assert recover(tmp_path, run_ns=0) is None
+    assert (tmp_path / "c.mcap").is_file()
+    assert pipe.is_fifo()
+    assert folder.is_dir()
+    assert [line["lesson"] for line in logged if line.get("remedy") == "remove it"] == [pipe.name, folder.name]
+
+
 def test_recovery_unpacks_every_chunk_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     data, stages = written()
     (tmp_path / f"cut{PART_SUFFIX}").write_bytes(data[: stages[-1].end])
