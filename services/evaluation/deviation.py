@@ -2,7 +2,8 @@
 
 A joint is green where it is surely within the limit, red where it is surely beyond twice the limit, yellow between. The limit is
 the action's tolerance for the joint, or what good performances differ by, whichever is larger. Where it was not seen, or the error
-of its place is too large to tell, it is grey: a colour that nobody can vouch for is never shown.
+of its place is too large to tell, it is grey: a colour that nobody can vouch for is never shown. An error is as large as it is in
+its worst direction: two cameras side by side know hardly anything of how far away a joint is.
 """
 
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from models.arrays import Float, UInt8
+from models.arrays import Bool, Float, UInt8
 from models.interpolation import between
 from models.messages.feedback import Colour
 from models.skeleton import coco
@@ -27,7 +28,7 @@ SPREADS: Final = 2.0
 RED: Final = 2.0
 """Red begins at so many limits."""
 TOO_UNCERTAIN: Final = 0.75
-"""A joint whose error is larger than this share of its limit is grey."""
+"""A joint whose error is, in any direction, larger than this share of its limit is grey."""
 _HEAD: Final = ("nose", "eye", "ear")
 _HIPS: Final = (coco.INDEX["left_hip"], coco.INDEX["right_hip"])
 _LEFT: Final = (coco.INDEX["left_shoulder"], coco.INDEX["left_hip"])
@@ -40,7 +41,7 @@ class Deviation:
 
     Attributes:
         distance: (T, 17) in limits: 1 is as far as may be; NaN where unknown.
-        sigma: (T, 17) standard deviation of that; NaN where unknown.
+        sigma: (T, 17) standard deviation of that, along the line to where it should be; NaN where unknown.
         colours: (T, 17) `Colour`.
     """
 
@@ -67,19 +68,28 @@ def deviate(
     limits = between(np.fmax(tolerances_m(tolerance, standard.stature_m), SPREADS * standard.spread_m), aligned.frames)
     distance = metres / limits
     with np.errstate(invalid="ignore", divide="ignore"):
-        towards = apart / metres[..., None]
-    sigma = _sigma_m(aligned, track, np.nan_to_num(towards), model) / limits
-    sigma = np.where(np.isfinite(distance), sigma, np.nan)
-    return Deviation(distance, sigma, colours_of(distance, sigma, track))
+        towards = np.nan_to_num(apart / metres[..., None])
+        covariance = _covariance_m2(aligned, track, model) / limits[..., None, None] ** 2
+    known = np.isfinite(distance)
+    covariance[~known] = 0.0
+    whole = np.trace(covariance, axis1=2, axis2=3)
+    # Where the distance is nothing it has no direction, and the error is in all of them.
+    nowhere = (towards == 0).all(axis=2)
+    along = np.where(nowhere, whole / 3, np.einsum("tja,tjab,tjb->tj", towards, covariance, towards)).clip(0.0, whole)
+    sigma = np.where(known, np.sqrt(along), np.nan)
+    widest = np.sqrt(np.linalg.eigvalsh(covariance)[..., -1])
+    # Whatever it is off across the line makes it no nearer.
+    farther = np.sqrt(distance**2 + whole - along)
+    judged = track.seen & known & (widest <= TOO_UNCERTAIN)
+    return Deviation(distance, sigma, _colours(distance - sigma, farther + sigma, judged))
 
 
-def colours_of(distance: Float, sigma: Float, track: Track) -> UInt8:
-    """(T, 17) `Colour` of distances in limits, (T, 17), and their standard deviations."""
+def _colours(least: Float, most: Float, judged: Bool) -> UInt8:
+    """(T, 17) `Colour` of what joints are off at least and at most, in limits; NaN where they are not judged."""
+    colours = np.full(judged.shape, Colour.YELLOW, np.uint8)
     with np.errstate(invalid="ignore"):
-        judged = track.seen & np.isfinite(distance) & (sigma <= TOO_UNCERTAIN)
-        colours = np.full(distance.shape, Colour.YELLOW, np.uint8)
-        colours[distance + sigma <= 1] = Colour.GREEN
-        colours[distance - sigma > RED] = Colour.RED
+        colours[most <= 1] = Colour.GREEN
+        colours[least > RED] = Colour.RED
     colours[~judged] = Colour.GREY
     return colours
 
@@ -90,20 +100,17 @@ def tolerances_m(tolerance: Tolerance, stature_m: float) -> Float:
     return np.array([getattr(tolerance, "head" if part in _HEAD else part) for part in parts]) * stature_m / 100
 
 
-def _sigma_m(aligned: AlignedTrack, track: Track, towards: Float, model: Uncertainty) -> Float:
-    """(T, 17) standard deviation of the distance along (T, 17, 3) unit vectors in the standard's frame."""
+def _covariance_m2(aligned: AlignedTrack, track: Track, model: Uncertainty) -> Float:
+    """(T, 17, 3, 3) of the joints' places in the standard's frame."""
     turn = aligned.placing.matrix
     scales, landmarks = np.square(model.noise_scale)[:, None, None], np.square(model.landmark_m)[:, None, None]
     joints = scales * track.covariance_m2 + landmarks * np.eye(3)
     # The middle of the hips is above the origin: its error moves all joints. Both hips are wrong alike: it is as large as theirs.
     hips = joints[:, _HIPS].mean(axis=1) * np.outer((1, 1, 0), (1, 1, 0))
     covariance = turn @ (joints + hips[:, None]) @ turn.T
-    along = np.einsum("tja,tjab,tjb->tj", towards, covariance, towards)
-    # Where the distance is about nothing it has no direction, and the error is in all of them.
-    nowhere = np.trace(covariance, axis1=2, axis2=3) / 3
     for moved in _of_the_whole(aligned, track.frame_s, model):
-        along, nowhere = along + (towards * moved).sum(axis=2) ** 2, nowhere + (moved**2).sum(axis=2) / 3
-    return np.asarray(np.sqrt(np.where((towards == 0).all(axis=2), nowhere, along)))
+        covariance += moved[..., :, None] * moved[..., None, :]
+    return np.asarray(covariance)
 
 
 def _of_the_whole(aligned: AlignedTrack, frame_s: float, model: Uncertainty) -> tuple[Float, Float, Float]:

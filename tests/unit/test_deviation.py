@@ -12,7 +12,7 @@ from models.skeleton import coco
 from models.teaching.schema import Tolerance
 from models.teaching.standard import FRAME_S, Exemplar, Standard
 from services.evaluation.alignment import align
-from services.evaluation.deviation import Deviation, _sigma_m, deviate
+from services.evaluation.deviation import Deviation, _covariance_m2, deviate
 from services.evaluation.track import Track, known_track
 from services.evaluation.uncertainty import EXACT, NETWORK, Uncertainty
 from tests.taught import shallow_squat, shipped
@@ -108,6 +108,28 @@ def test_what_is_too_uncertain_is_grey_however_near_it_looks() -> None:
     assert (compared(seen(waving(), 0.3)).colours == Colour.GREY).all()
 
 
+def unsure_ahead(joints_m: Float, sigma_m: float) -> Track:
+    """The right wrist is so unsure to the front, and known to half a centimetre aside and in height."""
+    track = seen(joints_m)
+    covariance = track.covariance_m2.copy()
+    covariance[:, WRIST] = np.diag((sigma_m**2, 0.005**2, 0.005**2))
+    return Track(track.t_s, track.joints_m, covariance, track.states)
+
+
+def test_what_is_too_uncertain_in_one_direction_is_grey_however_near_it_looks_in_another() -> None:
+    """The wrist is 2 cm too low, and nobody knows how far in front of the body it is."""
+    colours = compared(unsure_ahead(lowered(0.02), 0.3)).colours
+    assert (colours[:, WRIST] == Colour.GREY).all()
+    assert (np.delete(colours, WRIST, axis=1) == Colour.GREEN).all()
+
+
+def test_what_may_be_off_in_another_direction_is_not_green() -> None:
+    """10.5 cm are allowed: 7 cm too low, and 7 cm more or less to the front or back, it is outside one time in four."""
+    still = slice(0, 4)
+    assert (compared(unsure_ahead(lowered(0.07), 0.005)).colours[still, WRIST] == Colour.GREEN).all()
+    assert (compared(unsure_ahead(lowered(0.07), 0.08)).colours[still, WRIST] == Colour.YELLOW).all()
+
+
 def test_a_standard_that_does_not_know_a_joint_colours_it_grey() -> None:
     joints = waving()
     joints[:, WRIST] = np.nan
@@ -190,7 +212,7 @@ def test_where_a_body_faces_how_large_it_is_and_where_its_hips_are_is_as_unsure_
         found = align(seen(waving() + errors, 0.0), standard())
         assert found is not None
         apart.append((found.joints_m - exact.joints_m)[raised, joint])
-    for axis in range(3):
-        towards = np.broadcast_to(np.eye(3)[axis], (FRAMES, coco.COUNT, 3))
-        stated = _sigma_m(exact, seen(waving(), 0.0), towards, landmarks)[raised, joint]
-        assert 0.8 < stated / np.std(apart, axis=0)[axis] < 1.6, axis
+    stated = np.sqrt(np.diagonal(_covariance_m2(exact, seen(waving(), 0.0), landmarks)[raised, joint]))
+    ratio = stated / np.std(apart, axis=0)
+    assert (ratio > 0.8).all(), ratio
+    assert (ratio < 1.6).all(), ratio
