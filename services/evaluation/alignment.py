@@ -16,8 +16,9 @@ from typing import Final
 
 import numpy as np
 
-from models.arrays import Float
+from models.arrays import Bool, Float
 from models.compiled import Counts, compiled
+from models.skeleton import coco
 from models.teaching.standard import FRAME_S, Standard
 from services.evaluation.following import bridged, follow
 from services.evaluation.normalise import Placing, PlacingError, placed, placing_of
@@ -74,7 +75,8 @@ def align(track: Track, standard: Standard, band: float = BAND) -> AlignedTrack 
     """
     try:
         own = placing_of(standard.joints_m, FRAME_S, 1.0)
-        placing = placing_of(track.joints_m, track.frame_s, 1.0 / own.scale)
+        trunk_seen: Bool = np.asarray(track.seen[:, coco.TRUNK].all(axis=1))
+        placing = placing_of(track.joints_m, track.frame_s, 1.0 / own.scale, vouched=trunk_seen)
     except PlacingError:
         return None
     joints, theirs = placed(track.joints_m, placing), placed(standard.joints_m, replace(own, scale=1.0))

@@ -1,9 +1,10 @@
 """How far each joint is from the standard in each frame, and which colour that is.
 
 A joint is green where it is surely within the limit, red where it is surely beyond twice the limit, yellow between. The limit is
-the action's tolerance for the joint, or what good performances differ by, whichever is larger. Where it was not seen, or the error
-of its place is too large to tell, it is grey: a colour that nobody can vouch for is never shown. An error is as large as it is in
-its worst direction: two cameras side by side know hardly anything of how far away a joint is.
+the action's tolerance for the joint, or what good performances differ by, whichever is larger. Where it was not seen, or the hips
+and the heading by which it is compared were not, or the error of its place is too large to tell, it is grey: a colour that nobody
+can vouch for is never shown. An error is as large as it is in its worst direction: two cameras side by side know hardly anything of
+how far away a joint is.
 """
 
 from dataclasses import dataclass
@@ -80,8 +81,15 @@ def deviate(
     widest = np.sqrt(np.linalg.eigvalsh(covariance)[..., -1])
     # Whatever it is off across the line makes it no nearer.
     farther = np.sqrt(distance**2 + whole - along)
-    judged = track.seen & known & (widest <= TOO_UNCERTAIN)
+    judged = _seen(aligned, track) & known & (widest <= TOO_UNCERTAIN)
     return Deviation(distance, sigma, _colours(distance - sigma, farther + sigma, judged))
+
+
+def _seen(aligned: AlignedTrack, track: Track) -> Bool:
+    """(T, 17) where a joint was seen, and so was what it is compared by: both hips, and to where the pupil looked at first."""
+    hips = track.seen[:, _HIPS].all(axis=1, keepdims=True)
+    heading = track.seen[aligned.placing.frames, :][:, coco.TRUNK].all()
+    return np.asarray(track.seen & hips & heading)
 
 
 def _colours(least: Float, most: Float, judged: Bool) -> UInt8:

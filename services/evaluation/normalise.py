@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from models.arrays import Float
+from models.arrays import Bool, Float
 from models.motions.motion import Handed
 from models.skeleton import coco
 from services.evaluation.track import Track
@@ -40,10 +40,12 @@ class Placing:
     Attributes:
         heading_rad: to where the pupil looked in the world, from x to y.
         scale: canonical metres a metre of the world.
+        frames: of which the heading is the mean.
     """
 
     heading_rad: float
     scale: float
+    frames: tuple[int, ...]
 
     @property
     def matrix(self) -> Float:
@@ -103,7 +105,9 @@ def size_m(joints_m: Float) -> float:
     return total
 
 
-def placing_of(joints_m: Float, frame_s: float, to_size_m: float, seen_within_s: float = BEGINNING_S) -> Placing:
+def placing_of(
+    joints_m: Float, frame_s: float, to_size_m: float, seen_within_s: float = BEGINNING_S, vouched: Bool | None = None
+) -> Placing:
     """How to bring (T, 17, 3) joints into the canonical frame of a body of size `to_size_m`.
 
     Args:
@@ -111,6 +115,8 @@ def placing_of(joints_m: Float, frame_s: float, to_size_m: float, seen_within_s:
         frame_s: from one frame to the next.
         to_size_m: canonical metres from shoulder to ankle.
         seen_within_s: by when it must be seen to where he looks; infinite where it need be known only roughly.
+        vouched: (T,) in which frames the trunk was seen, and not only guessed; None for all. The heading is of such frames alone,
+            unless there is none by then.
 
     Raises:
         PlacingError: they do not show how large he is, or not early enough to where he looks.
@@ -119,13 +125,16 @@ def placing_of(joints_m: Float, frame_s: float, to_size_m: float, seen_within_s:
     if not size > 0:
         raise PlacingError("does not show how large the pupil is: his trunk, thigh or shank is never seen from end to end")
     times_s = np.arange(len(joints_m)) * frame_s
+    early = times_s <= seen_within_s + _ROUNDED_S
     ahead = facing(joints_m)
-    known = np.flatnonzero(np.isfinite(ahead[:, 0]))
-    if not len(known) or times_s[known[0]] > seen_within_s + _ROUNDED_S:
-        raise PlacingError(_why_it_is_not_known(joints_m[times_s <= seen_within_s + _ROUNDED_S], seen_within_s))
-    beginning = known[times_s[known] <= times_s[known[0]] + BEGINNING_S + _ROUNDED_S]
-    x, y = ahead[beginning].mean(axis=0)
-    return Placing(float(np.arctan2(y, x)), to_size_m / size)
+    known = np.isfinite(ahead[:, 0])
+    if not (known & early).any():
+        raise PlacingError(_why_it_is_not_known(joints_m[early], seen_within_s))
+    if vouched is not None and (known & early & vouched).any():
+        known &= vouched
+    frames = np.flatnonzero(known & (times_s <= times_s[known.argmax()] + BEGINNING_S + _ROUNDED_S))
+    x, y = ahead[frames].mean(axis=0)
+    return Placing(float(np.arctan2(y, x)), to_size_m / size, tuple(frames.tolist()))
 
 
 def _why_it_is_not_known(joints_m: Float, within_s: float) -> str:

@@ -104,6 +104,44 @@ def test_what_was_not_seen_is_grey() -> None:
     assert (unknown.colours[:, ELBOW] == Colour.GREEN).all()
 
 
+def guessed(joints_m: Float, joints: tuple[int, ...], frames: slice) -> Track:
+    track = seen(joints_m)
+    states = track.states.copy()
+    states[frames, joints] = JointState.GUESSED
+    return Track(track.t_s, track.joints_m, track.covariance_m2, states)
+
+
+def test_by_hips_that_were_only_guessed_no_joint_is_coloured() -> None:
+    """All are compared from the middle of the hips: 12 cm off, they would move the whole body."""
+    hips, frames = (coco.INDEX["left_hip"], HIP), slice(20, 28)
+    joints = waving()
+    joints[frames, hips, 0] += 0.12
+    colours = compared(guessed(joints, hips, frames)).colours
+    assert (colours[frames] == Colour.GREY).all()
+    assert (np.delete(colours, np.r_[frames], axis=0) == Colour.GREEN).mean() > 0.98
+
+
+def half_turned(frames: slice) -> Float:
+    """The left shoulder and hip are some 40 degrees too far back in some frames."""
+    joints = waving()
+    joints[frames, coco.INDEX["left_shoulder"], 0] -= 0.25
+    joints[frames, coco.INDEX["left_hip"], 0] -= 0.15
+    return joints
+
+
+def test_a_heading_is_that_of_the_frames_in_which_the_trunk_was_seen() -> None:
+    left = (coco.INDEX["left_shoulder"], coco.INDEX["left_hip"])
+    colours = compared(guessed(half_turned(slice(0, 6)), left, slice(0, 6))).colours
+    assert (colours[:6] == Colour.GREY).all()
+    assert (colours[6:] == Colour.GREEN).mean() > 0.98
+
+
+def test_by_a_heading_that_was_only_guessed_nobody_is_coloured() -> None:
+    shoulder = (coco.INDEX["left_shoulder"],)
+    colours = compared(guessed(waving(), shoulder, slice(0, 20))).colours
+    assert (colours == Colour.GREY).all()
+
+
 def test_what_is_too_uncertain_is_grey_however_near_it_looks() -> None:
     assert (compared(seen(waving(), 0.3)).colours == Colour.GREY).all()
 
