@@ -82,6 +82,7 @@ class Fault(Table, frozen=True, kw_only=True):
     importance: Annotated[float, Meta(ge=0.1, le=5, description="of two faults, the more important one is corrected first")]
     cue: Annotated[Text, Meta(description="what to do, in a few friendly words")]
     praise: Annotated[Text, Meta(description="what is said when just this was good")]
+    either_way: Annotated[bool, Meta(description="whether the opposite is a mistake, too, and no praise")] = False
     evidence: Annotated[tuple[Evidence, ...], Meta(min_length=1, max_length=8, description="by what it is known")]
 
 

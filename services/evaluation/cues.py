@@ -56,14 +56,15 @@ def choose(teaching: Teaching, judgements: Sequence[Judgement], measures: Sequen
     """
     importances = [fault.importance for fault in teaching.fault]
     cue = _largest([_urgency(one, weight) for one, weight in zip(judgements, importances, strict=True)])
-    not_good = unpraised(teaching, measures)
+    opposite = _opposite(teaching, judgements)
+    not_good = unpraised(teaching, measures) | opposite
     merits = [_merit(one, weight) for one, weight in zip(judgements, importances, strict=True)]
     praise = _largest([0.0 if one.fault in not_good else merit for one, merit in zip(judgements, merits, strict=True)])
     return Said(
         praise="" if praise is None else judgements[praise].fault,
         cue="" if cue is None else judgements[cue].fault,
         certainty=0.0 if cue is None else above(judgements[cue], CALLED),
-        fine=cue is None and _is_fine(judgements, measures),
+        fine=cue is None and not opposite and _is_fine(judgements, measures),
     )
 
 
@@ -81,6 +82,20 @@ def _is_fine(judgements: Sequence[Judgement], measures: Sequence[MeasureResult])
     judged = all(one.sigma is not None and one.sigma <= VAGUE for one in judgements)
     unlikely = all(above(one, CALLED) <= POSSIBLE for one in judgements)
     return judged and unlikely and all(one.verdict != "poor" for one in measures)
+
+
+def _opposite(teaching: Teaching, judgements: Sequence[Judgement]) -> set[str]:
+    """Names of faults whose opposite is a mistake, too, and may have been made: as far beyond what is good as a fault is corrected.
+
+    It is not corrected: by what numbers a teacher would do so, nobody has said.
+    """
+    return {
+        fault.name
+        for fault, one in zip(teaching.fault, judgements, strict=True)
+        if fault.either_way
+        and one.severity is not None
+        and above(Judgement(one.fault, -one.severity, one.sigma), CALLED) > POSSIBLE
+    }
 
 
 def _urgency(judgement: Judgement, importance: float) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec import structs
 
 from models.messages.feedback import VERDICTS, Judgement, MeasureResult, Verdict
 from models.teaching.schema import Fault, Teaching, decode_teaching
@@ -90,6 +91,22 @@ def test_a_point_of_which_nothing_is_known_is_not_praised_however_good_it_looks(
 
 def test_what_is_beyond_good_is_no_better_than_what_is_right() -> None:
     assert said({"a": 2, "b": 3}, a=(-1.0, 0.05), b=(0.0, 0.05)).praise == "b"
+
+
+def either_way(severity: float, sigma: float) -> Said:
+    """Of a fault of which the opposite is a mistake, too."""
+    only = structs.replace(FILE, fault=(structs.replace(FILE.fault[0], either_way=True),))
+    return choose(only, [Judgement(FILE.fault[0].name, severity, sigma)], [])
+
+
+@pytest.mark.parametrize(("severity", "sigma"), [(-1.0, 0.1), (-0.6, 0.05), (-0.45, 0.2)])
+def test_the_opposite_of_a_fault_is_neither_praised_nor_fine_where_it_is_a_mistake_too(severity: float, sigma: float) -> None:
+    assert either_way(severity, sigma) == Said()
+
+
+@pytest.mark.parametrize(("severity", "sigma"), [(0.0, 0.2), (-0.3, 0.2), (-0.45, 0.05)])
+def test_what_is_a_little_beyond_good_is_praised_also_where_the_opposite_is_a_mistake(severity: float, sigma: float) -> None:
+    assert either_way(severity, sigma) == Said(praise=FILE.fault[0].name, fine=True)
 
 
 def test_what_may_have_been_wrong_is_not_praised() -> None:

@@ -22,6 +22,9 @@ def test_what_a_file_says_is_read() -> None:
     assert shallow.evidence[1].stretch == ("peak", -0.1, "peak", 0.1)
     assert forward.cue.of("de") == "Nimm die Brust hoch."
     assert teaching.tolerance.wrist == 7
+    assert [fault.either_way for fault in teaching.fault] == [False, False]
+    either_way = decoded(GOOD.replace('praise.es = "Bien abajo."', 'praise.es = "Bien abajo."\neither_way = true'))
+    assert [fault.either_way for fault in either_way.fault] == [True, False]
 
 
 WRONG = {
@@ -59,6 +62,7 @@ WRONG = {
     "the same value twice": ("good = 40, fault = 60", "good = 40, fault = 40", "the same number"),
     "no value": ("good = 40, fault = 60", "good = 40", "`fault` is missing; add it"),
     "a value that is none": ("good = 40, fault = 60", "good = 40, fault = nan", "fault 'trunk_forward', evidence 1, fault"),
+    "a way that is neither": ("importance = 2", 'importance = 2\neither_way = "both"', "fault 'trunk_forward', either_way"),
     "an importance of nothing": ("importance = 2", "importance = 0", "fault 'trunk_forward', importance"),
     "a weight of nothing": ("weight = 2", "weight = 0", "fault 'too_shallow', evidence 1, weight"),
     "a weight below nothing": ("weight = 2", "weight = -2", "fault 'too_shallow', evidence 1, weight"),
