@@ -7,6 +7,7 @@ can vouch for is never shown. An error is as large as it is in its worst directi
 how far away a joint is.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -22,7 +23,7 @@ from services.evaluation.alignment import AlignedTrack
 from services.evaluation.normalise import size_m
 from services.evaluation.signals.reading import rate
 from services.evaluation.track import Track
-from services.evaluation.uncertainty import NETWORK, Uncertainty
+from services.evaluation.uncertainty import NETWORK, Uncertainty, roots
 
 SPREADS: Final = 2.0
 """Good performances differ by up to so many of their own standard deviations."""
@@ -112,22 +113,38 @@ def _covariance_m2(aligned: AlignedTrack, track: Track, model: Uncertainty) -> F
     """(T, 17, 3, 3) of the joints' places in the standard's frame."""
     turn = aligned.placing.matrix
     scales, landmarks = np.square(model.noise_scale)[:, None, None], np.square(model.landmark_m)[:, None, None]
-    joints = scales * track.covariance_m2 + landmarks * np.eye(3)
+    noise = scales * track.covariance_m2
+    joints = noise + landmarks * np.eye(3)
     # The middle of the hips is above the origin: its error moves all joints. Both hips are wrong alike: it is as large as theirs.
     hips = joints[:, _HIPS].mean(axis=1) * np.outer((1, 1, 0), (1, 1, 0))
     covariance = turn @ (joints + hips[:, None]) @ turn.T
-    for moved in _of_the_whole(aligned, track.frame_s, model):
+    heading_rad = _heading_sigma_rad(aligned, turn @ noise @ turn.T, track.frame_s, model)
+    for moved in _of_the_whole(aligned, heading_rad, track.frame_s, model):
         covariance += moved[..., :, None] * moved[..., None, :]
     return np.asarray(covariance)
 
 
-def _of_the_whole(aligned: AlignedTrack, frame_s: float, model: Uncertainty) -> tuple[Float, Float, Float]:
+def _heading_sigma_rad(aligned: AlignedTrack, noise_m2: Float, frame_s: float, model: Uncertainty) -> float:
+    """Standard deviation of where the body is taken to face, by (T, 17, 3, 3) noise in the standard's frame.
+
+    The line of shoulders and hips is wrong by their landmarks, in all frames alike, and by the noise of the frames of which the
+    heading is the mean; in those the body looks along x.
+    """
+    joints, frames = aligned.joints_m, aligned.placing.frames
+    width = float(np.nanmedian(np.linalg.norm(joints[:, _LEFT].sum(axis=1) - joints[:, _RIGHT].sum(axis=1), axis=1)))
+    errors = np.array(model.landmark_m)[:, None] * model.mixed
+    landmarks_m = aligned.placing.scale * float(np.linalg.norm(errors[_LEFT, :].sum(axis=0) - errors[_RIGHT, :].sum(axis=0)))
+    noise = model.mixed[:, :, None] * roots(noise_m2[frames, :])[..., 0, None, :]
+    turning = noise[:, _LEFT].sum(axis=1) - noise[:, _RIGHT].sum(axis=1)
+    noise_m = math.sqrt(float((turning**2).sum(axis=(1, 2)).mean()) / model.independent(len(frames), frame_s))
+    return math.hypot(landmarks_m, noise_m) / width
+
+
+def _of_the_whole(aligned: AlignedTrack, heading_rad: float, frame_s: float, model: Uncertainty) -> tuple[Float, Float, Float]:
     """(T, 17, 3) each: how far every joint is moved by one standard deviation of where the body is taken to face, of how large it
     is taken to be, and of when it is where it is."""
     joints, scale = aligned.joints_m, aligned.placing.scale
-    width = float(np.nanmedian(np.linalg.norm(joints[:, _LEFT].sum(axis=1) - joints[:, _RIGHT].sum(axis=1), axis=1)))
-    errors = np.array(model.landmark_m)[:, None] * model.mixed
-    turn = scale * float(np.linalg.norm(errors[_LEFT, :].sum(axis=0) - errors[_RIGHT, :].sum(axis=0))) / width
     ends = np.hypot(model.landmark_m[coco.INDEX["left_shoulder"]], model.landmark_m[coco.INDEX["left_ankle"]])
     growth = scale * float(ends) / size_m(joints)
-    return turn * joints[..., [1, 0, 2]] * (-1.0, 1.0, 0.0), growth * joints, model.timing_s * np.nan_to_num(rate(joints, frame_s))
+    turned = heading_rad * joints[..., [1, 0, 2]] * (-1.0, 1.0, 0.0)
+    return turned, growth * joints, model.timing_s * np.nan_to_num(rate(joints, frame_s))

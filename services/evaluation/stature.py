@@ -75,8 +75,8 @@ def _typical(lengths: Float, quantile: float, frame_s: float, model: Uncertainty
     known = lengths[np.isfinite(lengths)]
     if len(known) < _FEWEST:
         return math.nan, math.nan
-    # Frames that follow one another have nearly the same noise: its correlation over time, summed up.
-    independent = max(len(known) * frame_s / (math.sqrt(2 * math.pi) * model.noise_s), 1.0)
+    # Frames that follow one another have nearly the same noise.
+    independent = model.independent(len(known), frame_s)
     return float(np.quantile(known, quantile)), _OF_MEDIAN * float(known.std()) / math.sqrt(independent)
 
 

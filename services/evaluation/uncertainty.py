@@ -15,6 +15,7 @@ The numbers were found on development pupils through the twin and fusion, from m
 sigma, whatever the rest does. `make bench-measures` counts.
 """
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -54,6 +55,10 @@ class Uncertainty:
         apart = t_s[:, None] - t_s[None, :]
         noise, landmark = (np.exp(-((apart / time_s) ** 2) / 2) for time_s in (self.noise_s, self.landmark_s))
         return noise, landmark
+
+    def independent(self, count: int, frame_s: float) -> float:
+        """How many values of the noise so many frames are worth that follow one another: its correlation over time, summed up."""
+        return max(count * frame_s / (math.sqrt(2 * math.pi) * self.noise_s), 1.0)
 
     @cached_property
     def mixed(self) -> Float:

@@ -254,3 +254,30 @@ def test_where_a_body_faces_how_large_it_is_and_where_its_hips_are_is_as_unsure_
     ratio = stated / np.std(apart, axis=0)
     assert (ratio > 0.8).all(), ratio
     assert (ratio < 1.6).all(), ratio
+
+
+@pytest.mark.parametrize("part", ["wrist", "ankle"])
+def test_where_a_body_faces_is_as_unsure_as_its_beginning_is_noisy(part: str) -> None:
+    """Landmarks, and in the frames of which the heading is the mean 2 cm of noise, which changes as slowly as fusion's does."""
+    random = np.random.default_rng(4)
+    model = replace(NETWORK, timing_s=0.0, noise_scale=(1.0,) * coco.COUNT)
+    raised, joint, sigma_m = FRAMES // 4, coco.INDEX[f"right_{part}"], 0.02
+    exact = align(seen(waving(), 0.0), standard())
+    assert exact is not None
+    beginning = len(exact.placing.frames)
+    assert beginning <= raised
+    smooth = np.linalg.cholesky(model.alike(np.arange(beginning, dtype=np.float64) * FRAME_S)[0] + 1e-9 * np.eye(beginning))
+    apart = []
+    for _ in range(150):
+        noisy = waving() + np.array(model.landmark_m)[:, None] * (model.mixed @ random.standard_normal((coco.COUNT, 3)))
+        noisy[:beginning] += sigma_m * model.mixed @ np.tensordot(smooth, random.standard_normal((beginning, coco.COUNT, 3)), 1)
+        found = align(seen(noisy, 0.0), standard())
+        assert found is not None
+        apart.append((found.joints_m - exact.joints_m)[raised, joint])
+    track = seen(waving(), 0.0)
+    covariance = track.covariance_m2.copy()
+    covariance[:beginning] = sigma_m**2 * np.eye(3)
+    told = Track(track.t_s, track.joints_m, covariance, track.states)
+    ratio = np.sqrt(np.diagonal(_covariance_m2(exact, told, model)[raised, joint])) / np.std(apart, axis=0)
+    assert (ratio > 0.8).all(), ratio
+    assert (ratio < 1.6).all(), ratio
