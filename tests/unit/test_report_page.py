@@ -1,5 +1,7 @@
 """The page to print holds everything itself, says nothing that nobody knows, and lets nobody write into it."""
 
+import csv
+import io
 import json
 import re
 from dataclasses import replace
@@ -13,7 +15,7 @@ import pytest
 from models.messages.feedback import Colour, Judgement, MeasureResult
 from models.skeleton import coco
 from models.teaching.schema import Language
-from services.evaluation.report import curve_chart, page
+from services.evaluation.report import csv_file, curve_chart, page
 from services.evaluation.report.body import Trunk, parts_of, together
 from services.evaluation.report.curve import curves_of
 from services.evaluation.report.figures import figures
@@ -217,6 +219,17 @@ def test_each_pupil_has_a_sheet_of_his_own_on_which_nobody_else_is() -> None:
 def drawn(told: object, class_: str) -> int:
     source = figures(told, WORDS["en"], "")  # type: ignore[arg-type]
     return len(re.findall(rf'class="{class_} edge"', source))
+
+
+def test_the_time_since_the_start_is_as_unsure_below_the_figure_as_in_the_gradebook() -> None:
+    told = attempt()
+    (row,) = csv.DictReader(io.StringIO(csv_file.encode(sheet(told).report).decode("utf-8-sig"), newline=""))
+    said = estimate(float(row["duration_s"]), float(row["duration_s_sigma"]), "s", WORDS["en"])
+    assert said.endswith("±\u00a00.03\u00a0s")
+    captions = re.findall(r">([^<]*±[^<]*)</text>", figures(told, WORDS["en"], ""))
+    assert len(captions) == 3
+    assert captions[-1] == said
+    assert {caption.split("±")[1] for caption in captions} == {said.split("±")[1]}
 
 
 def test_a_figure_is_painted_as_its_joints_are_judged() -> None:

@@ -4,6 +4,7 @@ How far a joint is off is shown by colour and by pattern, so that it survives a 
 from green: plain, dots, stripes. What nobody can vouch for is hollow with a dashed edge, and what is not known is not drawn.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -35,6 +36,8 @@ _ARC: Final = 7
 """Corners of the round end of a limb."""
 _USUAL_SIZE_M: Final = 1.1
 """From shoulder to ankle, of somebody whose limbs were not seen."""
+_SINCE_SIGMA_S: Final = math.sqrt(2) * NETWORK.moment_s
+"""Of the time from one keyframe to another: both are unsure."""
 PAINT: Final = {Colour.GREEN: "good", Colour.YELLOW: "near", Colour.RED: "off", Colour.GREY: "unsure"}
 """Classes of the style sheet."""
 _ON_TOP: Final = (Colour.GREEN, Colour.GREY, Colour.YELLOW, Colour.RED)
@@ -94,9 +97,9 @@ def figures(feedback: Feedback, words: Words, label: str) -> str:
     drawn = []
     for place, (frame, moment) in enumerate(zip(frames, scene, strict=True)):
         pen = _Pen(view, scale, size, panel_mm * (place + 0.5), moment.middle_m)
-        start_s, sigma_s = (feedback.keyframes_ns[place] - feedback.keyframes_ns[0]) * 1e-9, NETWORK.moment_s
+        start_s = (feedback.keyframes_ns[place] - feedback.keyframes_ns[0]) * 1e-9
         drawn.append(_panel(pen, panel_mm, feedback, frame, moment))
-        drawn.append(_caption(pen.centre_mm, place, words, "" if place == 0 else estimate(start_s, sigma_s, "s", words)))
+        drawn.append(_caption(pen.centre_mm, place, words, "" if place == 0 else estimate(start_s, _SINCE_SIGMA_S, "s", words)))
     drawn.append(svg.text((WIDTH_MM, 3.0), words.seen_from[view.seen], "when", "end"))
     return svg.drawing(WIDTH_MM, HEIGHT_MM, "".join(drawn), label)
 
