@@ -80,10 +80,8 @@ def deviate(
     along = np.where(nowhere, whole / 3, np.einsum("tja,tjab,tjb->tj", towards, covariance, towards)).clip(0.0, whole)
     sigma = np.where(known, np.sqrt(along), np.nan)
     widest = np.sqrt(np.linalg.eigvalsh(covariance)[..., -1])
-    # Whatever it is off across the line makes it no nearer.
-    farther = np.sqrt(distance**2 + whole - along)
     judged = _seen(aligned, track) & known & (widest <= TOO_UNCERTAIN)
-    return Deviation(distance, sigma, _colours(distance - sigma, farther + sigma, judged))
+    return Deviation(distance, sigma, _colours(distance, sigma, judged))
 
 
 def _seen(aligned: AlignedTrack, track: Track) -> Bool:
@@ -93,12 +91,12 @@ def _seen(aligned: AlignedTrack, track: Track) -> Bool:
     return np.asarray(track.seen & hips & heading)
 
 
-def _colours(least: Float, most: Float, judged: Bool) -> UInt8:
-    """(T, 17) `Colour` of what joints are off at least and at most, in limits; NaN where they are not judged."""
+def _colours(distance: Float, sigma: Float, judged: Bool) -> UInt8:
+    """(T, 17) `Colour` of distances in limits, (T, 17), and their standard deviations; grey where they are not judged."""
     colours = np.full(judged.shape, Colour.YELLOW, np.uint8)
     with np.errstate(invalid="ignore"):
-        colours[most <= 1] = Colour.GREEN
-        colours[least > RED] = Colour.RED
+        colours[distance + sigma <= 1] = Colour.GREEN
+        colours[distance - sigma > RED] = Colour.RED
     colours[~judged] = Colour.GREY
     return colours
 
