@@ -21,6 +21,8 @@ from services.evaluation.signals.stretch import Sample, sample, stretch, summed,
 
 _ENDS: Final = 8
 """Of a mean of so few frames all must have been seen."""
+LEVELS: Final = frozenset({"at", "max", "min", "mean"})
+"""What is taken of a signal for a number that is a value of the signal itself, and not how far two values are apart, or when."""
 
 
 def evaluate(measure: Measure, reading: Reading, attempt: FoundAttempt) -> Measured:
@@ -73,14 +75,17 @@ class _Value:
 
 
 def _reduced(measure: Measure, series: Series, attempt: FoundAttempt, unit: Unit) -> Measured:
-    moments: dict[Phase, float] = {phase: attempt.moment_s(phase) for phase in set(measure.stretch[::2])}
+    phases = [measure.stretch[0], measure.stretch[2]]
+    if _is_against_start(measure, series):
+        phases.append("start")
+    moments: dict[Phase, float] = {phase: attempt.moment_s(phase) for phase in phases}
     name = name_of(measure)
     first_s, last_s = _ends_s(measure, moments)
     if last_s < first_s:
         return Measured(name, math.nan, math.nan, unit, False, BACKWARDS)
     series = series.about(first_s, last_s)
     samples = _samples(measure, series, moments)
-    found = _taken(measure, series, samples)
+    found = _value(measure, series, moments)
     inside = _share_inside(series, samples)
     if not math.isfinite(found.value) or inside < SEEN_SHARE:
         return Measured(name, math.nan, math.nan, unit, False, HIDDEN if inside == 1 else OUTSIDE)
@@ -91,6 +96,11 @@ def _reduced(measure: Measure, series: Series, attempt: FoundAttempt, unit: Unit
     return Measured(name, found.value, math.sqrt(variance), unit, known, "" if known else HIDDEN)
 
 
+def _is_against_start(measure: Measure, series: Series) -> bool:
+    """Whether the value at the start is to be taken off; where two values are taken from one another it is none of either."""
+    return series.from_start and measure.take in LEVELS
+
+
 def _ends_s(measure: Measure, moments: Mapping[Phase, float]) -> tuple[float, float]:
     first, early_s, last, late_s = measure.stretch
     return moments[first] + early_s, moments[last] + late_s
@@ -99,6 +109,15 @@ def _ends_s(measure: Measure, moments: Mapping[Phase, float]) -> tuple[float, fl
 def _samples(measure: Measure, series: Series, moments: Mapping[Phase, float]) -> list[Sample]:
     first_s, last_s = _ends_s(measure, moments)
     return [sample(series, first_s)] if measure.take == "at" else stretch(series, first_s, last_s)
+
+
+def _value(measure: Measure, series: Series, moments: Mapping[Phase, float]) -> _Value:
+    found = _taken(measure, series, _samples(measure, series, moments))
+    if found.weights is None or not _is_against_start(measure, series):
+        return found
+    start = sample(series, moments["start"])
+    seen = found.seen and bool(series.seen[start.weights != 0].all())
+    return _Value(found.value - start.value, found.weights - start.weights, found.sigma, seen)
 
 
 def _taken(measure: Measure, series: Series, samples: list[Sample]) -> _Value:
@@ -138,8 +157,7 @@ def _moment_variance(measure: Measure, series: Series, moments: Mapping[Phase, f
         return 0.0
     values = []
     for shift_s in (-moment_s, moment_s):
-        moved = _samples(measure, series, {**moments, phase: moments[phase] + shift_s})
-        values.append(_taken(measure, series, moved).value)
+        values.append(_value(measure, series, {**moments, phase: moments[phase] + shift_s}).value)
     change = (values[1] - values[0]) / 2
     return change**2 if math.isfinite(change) else 0.0
 

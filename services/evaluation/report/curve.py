@@ -1,5 +1,6 @@
 """Angle curves of an attempt: which two are worth paper, the pupil's, the standard's, and how far apart they may be."""
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -7,13 +8,16 @@ from typing import Final
 import numpy as np
 from msgspec import UNSET
 
-from models.arrays import Float
+from models.arrays import Bool, Float
 from models.messages.feedback import Feedback
 from models.messages.motion import JointState
 from models.teaching.measure import Measure, Side
 from models.teaching.schema import Evidence, Teaching
+from services.evaluation.measures.reduce import LEVELS
 from services.evaluation.signals.catalogue import CATALOGUE
 from services.evaluation.signals.reading import Reading
+from services.evaluation.signals.series import Series
+from services.evaluation.signals.stretch import sample
 from services.evaluation.stature import stature_of
 from services.evaluation.track import Track, known_track
 from services.evaluation.uncertainty import EXACT
@@ -27,8 +31,6 @@ LEAST_TOLERANCE_DEG: Final = 10.0
 """No band is narrower: no joint is seen that well, and nobody performs the same twice."""
 LEAST_SEEN: Final = 0.5
 """Share of the attempt's frames in which the pupil's angle must have been seen to be drawn."""
-_LEVELS: Final = {"at", "max", "min", "mean"}
-"""What is taken of a signal for a number that is a value of the signal itself."""
 _NEVER_BELOW_0: Final = {"knee_flexion", "elbow_flexion", "shoulder_elevation", "forearm_inclination", "trunk_inclination"}
 _FALLBACK: Final[tuple[tuple[str, Side], ...]] = (("knee_flexion", "lead"), ("elbow_flexion", "lead"))
 
@@ -79,25 +81,38 @@ def curves_of(feedback: Feedback, teaching: Teaching | None) -> list[Curve]:
     pupil = Reading(whole, feedback.handed, told=stature_of(whole))
     standard = Reading(known_track(feedback.standard_m.astype(np.float64), whole.frame_s), feedback.handed, EXACT, pupil.stature)
     within = slice(feedback.frame_of(feedback.keyframes_ns[0]), feedback.frame_of(feedback.keyframes_ns[-1]) + 1)
+    start_s = (feedback.keyframes_ns[0] - feedback.t_first_ns) * 1e-9
     found: list[Curve] = []
     for signal, side in dict.fromkeys(_worth(feedback, teaching)):
         series, model = (reading.of(CATALOGUE[signal], side) for reading in (pupil, standard))
+        (value, sigmas, known), (beside, _, _) = (_against_start(one, start_s) for one in (series, model))
         tolerance = _tolerance(signal, side, feedback, teaching)
         # Less sure than the band is wide, it would look like a fault or like none by chance alone.
         with np.errstate(invalid="ignore"):
-            seen = series.seen & (series.sigma <= tolerance)
+            seen = known & (sigmas <= tolerance)
         if seen[within].mean() < LEAST_SEEN:
             continue
-        value = np.where(seen, series.value, np.nan)
+        drawn = np.where(seen, value, np.nan)
         if series.turns:
-            value = _beside(value, model.value)
-        t_s = whole.t_s - (feedback.keyframes_ns[0] - feedback.t_first_ns) * 1e-9
-        sigma = float(np.median(series.sigma[within][seen[within]]))
-        beside = model.value if series.turns else _same_turn(model.value, value)
-        found.append(Curve(signal, side, t_s, value, sigma, beside, tolerance))
+            drawn = _beside(drawn, beside)
+        else:
+            beside = _same_turn(beside, drawn)
+        sigma = float(np.median(sigmas[within][seen[within]]))
+        found.append(Curve(signal, side, whole.t_s - start_s, drawn, sigma, beside, tolerance))
         if len(found) == CURVES:
             break
     return found
+
+
+def _against_start(series: Series, start_s: float) -> tuple[Float, Float, Bool]:
+    """(T,) values, their sigmas, and whether they were seen; of an angle against the start as `evaluate` takes it, so that curve
+    and number are one."""
+    if not series.from_start:
+        return series.value, series.sigma, series.seen
+    start = sample(series, start_s)
+    sigmas = [math.sqrt(series.variance(here - start.weights)) for here in np.eye(len(series))]
+    seen = series.seen & bool(series.seen[start.weights != 0].all())
+    return series.value - start.value, np.array(sigmas), seen
 
 
 def _track(feedback: Feedback) -> Track:
@@ -136,7 +151,7 @@ def _tolerance(signal: str, side: Side, feedback: Feedback, teaching: Teaching |
     others: list[float] = []
     for fault in teaching.fault:
         for one in fault.evidence:
-            if one.signal == signal and _side(one) == side and one.take in _LEVELS:
+            if one.signal == signal and _side(one) == side and one.take in LEVELS:
                 (corrected if fault.name == feedback.cue else others).append(abs(one.good - one.fault) / 2)
     shown = [(one.good[1] - one.good[0]) / 2 for one in teaching.shown if one.signal == signal and _side(one) == side]
     return max(min(corrected or shown or others or [USUAL_TOLERANCE_DEG]), LEAST_TOLERANCE_DEG)

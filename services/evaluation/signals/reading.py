@@ -116,9 +116,10 @@ class Reading:
         series = self._series(signal, value, slopes, used)
         if signal.rate_of:
             return self._rate(series, signal)
-        if signal.from_first:
+        if signal.from_start:
+            # A track does not know when the attempt in it starts: until that is told, values are against the first known frame.
             whole = unwrapped(value)
-            return replace(series, value=whole - first_known(whole))
+            return replace(series, value=whole - first_known(whole), from_start=True)
         return replace(series, value=unwrapped(value, series.sigma <= SURE_DEG), turns=True) if signal.turns else series
 
     def _series(self, signal: Signal, value: Float, slopes: Float, used: list[int]) -> Series:

@@ -33,6 +33,8 @@ class Series:
         seen: (T,) whether two views or more agreed on all joints that the value is made of.
         model: how errors at different instants are alike.
         turns: whether values that are whole turns apart are the same.
+        from_start: whether the value at the start of the attempt is yet to be taken off; here it is against any other frame, and
+            that one's error is in no sigma.
     """
 
     unit: str
@@ -44,6 +46,7 @@ class Series:
     seen: Bool
     model: Uncertainty
     turns: bool = False
+    from_start: bool = False
 
     def __len__(self) -> int:
         return len(self.t_s)

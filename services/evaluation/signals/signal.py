@@ -23,7 +23,7 @@ class Signal:
         order: which time derivative of the joints the formula is of.
         sided: whether left and right have one each. Of the others the side says only which direction is positive.
         rate_of: name of the signal whose rate of change it is; then it has that one's formula.
-        from_first: whether it is an angle against that of the first known frame, and whole turns since then count.
+        from_start: whether it is an angle against that at the start of the attempt, and whole turns since then count.
     """
 
     name: str
@@ -34,7 +34,7 @@ class Signal:
     order: Literal[0, 1, 2] = 0
     sided: bool = False
     rate_of: str = ""
-    from_first: bool = False
+    from_start: bool = False
 
     @property
     def turns(self) -> bool:

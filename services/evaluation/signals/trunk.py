@@ -71,10 +71,10 @@ SIGNALS = (
     Signal(
         "heading",
         "deg",
-        "Where hips and shoulders face, as seen from above, against the first known frame: "
+        "Where hips and shoulders face, as seen from above, against the start of the attempt: "
         "positive with the side that leads turned backwards.",
         _heading,
-        from_first=True,
+        from_start=True,
     ),
     Signal(
         "trunk_length",

@@ -187,7 +187,7 @@ def _of_side(one: Try, signal: Signal, side: BodySide) -> Float:
     points = (joints, rate(joints, one.track.frame_s), rate_of_rate(joints, one.track.frame_s))[signal.order]
     value = signal.formula(Posture(lambda joint: points[:, joint], side, stature_m, masses_of(stature_m)))
     value = unwrapped(value) if signal.turns else value
-    value = value - value[0] if signal.name == "heading" else value
+    value = value - value[round(one.track.frame_at(one.attempt.moment_s("start")))] if signal.from_start else value
     return -rate(value, one.track.frame_s) if signal.rate_of else value
 
 
