@@ -91,7 +91,7 @@ def _reduced(measure: Measure, series: Series, attempt: FoundAttempt, unit: Unit
         return Measured(name, math.nan, math.nan, unit, False, HIDDEN if inside == 1 else OUTSIDE)
     variance = found.sigma**2 + (0.0 if found.weights is None else series.variance(found.weights))
     for phase in moments:
-        variance += _moment_variance(measure, series, moments, phase)
+        variance += _moment_variance(measure, series, moments, phase, found.value)
     known = found.seen and _enough_seen(series, samples) and math.isfinite(variance)
     return Measured(name, found.value, math.sqrt(variance), unit, known, "" if known else HIDDEN)
 
@@ -150,16 +150,19 @@ def _mean(series: Series, samples: list[Sample]) -> _Value:
     return _Value(summed(series.value, weights), weights, seen=bool(enough))
 
 
-def _moment_variance(measure: Measure, series: Series, moments: Mapping[Phase, float], phase: Phase) -> float:
-    """By how much the value varies as the keyframe's instant does."""
+def _moment_variance(
+    measure: Measure, series: Series, moments: Mapping[Phase, float], phase: Phase, value: float
+) -> float:
+    """By how much the value varies as the keyframe's instant does; beside what is not known, as on the other side of it. NaN where
+    that is not known on either."""
     moment_s = series.model.moment_s
     if not moment_s:
         return 0.0
-    values = []
-    for shift_s in (-moment_s, moment_s):
-        values.append(_value(measure, series, {**moments, phase: moments[phase] + shift_s}).value)
-    change = (values[1] - values[0]) / 2
-    return change**2 if math.isfinite(change) else 0.0
+    earlier, later = (
+        _value(measure, series, {**moments, phase: moments[phase] + shift_s}).value for shift_s in (-moment_s, moment_s)
+    )
+    changes = ((later - earlier) / 2, later - value, value - earlier)
+    return next((change**2 for change in changes if math.isfinite(change)), math.nan)
 
 
 def _share_inside(series: Series, samples: list[Sample]) -> float:
