@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from models.skeleton import coco
 from models.teaching.measure import Measure
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.measures.measured import Measured
@@ -18,7 +19,7 @@ from tests.stick_figure import DOWN, LEFT, figure, turned
 COUNT, FRAME_S = 40, 1 / 30
 PEAK = 20
 PLACED = replace(NETWORK, timing_s=0.0)
-"""Joints that move are at their places as exactly as others: what is less sure of them is for their keyframe."""
+"""Joints that move are as surely at their places as others: only their keyframe makes them less sure."""
 
 
 def bend_at_peak(*unseen: int, count: int = COUNT, model: Uncertainty = PLACED) -> Measured:
@@ -37,6 +38,13 @@ def test_a_keyframe_beside_what_was_not_seen_is_no_surer_than_others(unseen: tup
     assert part.known
     assert part.value == pytest.approx(whole.value)
     assert part.sigma >= whole.sigma * (1 - 1e-6)
+
+
+@pytest.mark.parametrize("unseen", [PEAK - 1, PEAK + 1])
+def test_what_moves_is_no_surer_beside_what_was_not_seen(unseen: int) -> None:
+    """Nor at the place that shutters and the smoother put it."""
+    late = replace(NETWORK, landmark_m=(0.0,) * coco.COUNT, noise_scale=(0.0,) * coco.COUNT, moment_s=0.0)
+    assert bend_at_peak(unseen, model=late).sigma == pytest.approx(bend_at_peak(model=late).sigma, rel=0.01)
 
 
 def test_what_is_known_in_no_frame_beside_the_keyframe_is_unknown() -> None:

@@ -72,7 +72,7 @@ class Reading:
     @cached_property
     def _roots_m(self) -> Float:
         """(T, 17, 3, 3) of the joints' covariance, with what lies along their way."""
-        late_m = self.model.timing_s * np.nan_to_num(self._derivatives[1])
+        late_m = self.model.timing_s * np.nan_to_num(rate_to_the_edge(self.track.joints_m, self.track.frame_s))
         scale = np.array(self.model.noise_scale)[:, None, None]
         return roots(scale**2 * self.track.covariance_m2 + late_m[..., :, None] * late_m[..., None, :])
 
@@ -186,6 +186,15 @@ def rate(values: Float, frame_s: float) -> Float:
     if len(values) >= 5:
         wide = (values[:-4] - 8 * values[1:-3] + 8 * values[3:-1] - values[4:]) / (12 * frame_s)
         out[2:-2] = np.where(np.isfinite(wide), wide, out[2:-2])
+    return out
+
+
+def rate_to_the_edge(values: Float, frame_s: float) -> Float:
+    """As `rate`; at ends and beside gaps from the one frame next to it. NaN where a frame is alone."""
+    out = rate(values, frame_s)
+    steps = np.diff(values, axis=0) / frame_s
+    for frames in (out[:-1], out[1:]):
+        np.copyto(frames, steps, where=~np.isfinite(frames))
     return out
 
 
