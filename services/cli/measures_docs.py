@@ -40,7 +40,7 @@ _TAKES: Final = """\
 |---|---|
 | at | the value at a keyframe, between frames by a cubic |
 | max, min | the extreme value of a stretch, between frames by a parabola |
-| mean | of all frames of a stretch |
+| mean | of the frames of a stretch that were seen; half of their range times the share that was not is in its sigma |
 | range | the largest less the smallest value: **range of motion** of an angle |
 | change | the value at the end of a stretch less that at its beginning |
 | time_of_max, time_of_min | seconds from the beginning of a stretch to the extreme |

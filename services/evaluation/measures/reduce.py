@@ -141,13 +141,31 @@ def _taken(measure: Measure, series: Series, samples: list[Sample]) -> _Value:
 
 
 def _mean(series: Series, samples: list[Sample]) -> _Value:
+    """Of what was seen; where nothing was, of what is known otherwise, and not `seen`."""
     known = [one for one in samples if math.isfinite(one.value)]
     if not known:
         return _Value(math.nan)
-    weights = np.mean([one.weights for one in known], axis=0)
-    used = series.seen[weights != 0]
-    enough = np.count_nonzero(used) >= SEEN_SHARE * len(used) if len(used) > _ENDS else used.all()
-    return _Value(summed(series.value, weights), weights, seen=bool(enough))
+    frames = series.seen[np.any([one.weights != 0 for one in known], axis=0)]
+    enough = np.count_nonzero(frames) >= SEEN_SHARE * len(frames) if len(frames) > _ENDS else frames.all()
+    seen = [one for one in known if series.seen[one.weights != 0].all()]
+    used = seen or known
+    weights = np.mean([one.weights for one in used], axis=0)
+    hidden = _unseen_share(samples, len(seen)) * _spread([one.value for one in used])
+    return _Value(summed(series.value, weights), weights, hidden, bool(enough))
+
+
+def _unseen_share(samples: list[Sample], seen: int) -> float:
+    """Of a stretch; what lies beyond the track has no samples, and was not seen, either."""
+    whole = max(len(samples), samples[-1].place - samples[0].place + 1)
+    return 1 - seen / whole
+
+
+def _spread(values: list[float]) -> float:
+    """How far the mean of what was not seen may be from that of what was, as a standard deviation: half of the range.
+
+    The values' own standard deviation would do if any frame were as likely to be lost. It is the fast ones at the turning points.
+    """
+    return (max(values) - min(values)) / 2
 
 
 def _moment_variance(
