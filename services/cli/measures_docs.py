@@ -21,7 +21,8 @@ number of it, at a keyframe (`at`) or over a stretch (`over`, `take`). A **funct
   second, m_s2 metres a second squared, deg_s degrees a second, 1 a plain number. Stature is estimated from thighs, shanks, trunk
   and neck; its sigma is in every percentage.
 - **Sigma.** Every number has a standard deviation: the covariance of the joints, from fusion, and what the pose network puts beside
-  the joint, carried to first order through the formula; errors that two instants share cancel in their difference. 68 % of errors
+  the joint, carried to first order through the formula; errors that two instants share cancel in their difference. The instant of a
+  keyframe is unsure, too: by 0.02 s, or 0.1 s where the hips or half of the joints were not seen around it. 68 % of errors
   shall lie within it; `make bench-measures` counts them (`services/evaluation/uncertainty.py`).
 - **Unknown.** A joint that was not seen makes unknown what is made of it: a number that is not known is grey on the page and judges
   nobody. **The pose network has no points of the feet**: nothing that needs a heel, a toe or the sole is measured; what stands in

@@ -7,6 +7,7 @@ import numpy as np
 
 from models.compiled import Counts
 from services.evaluation.attempt import FoundAttempt
+from services.evaluation.measures import keyframe
 from services.evaluation.measures.flight import COM_CM
 from services.evaluation.measures.measured import HIDDEN, Estimate, Function, unknown
 from services.evaluation.signals.catalogue import CATALOGUE
@@ -64,8 +65,9 @@ def _steady(reading: Reading, attempt: FoundAttempt) -> Estimate:
     if len(after) < 2 or not np.isfinite(speed.value[after]).all():
         return unknown(HIDDEN)
     fast = after[speed.value[after] > _STEADY_M_S]
+    peak_sigma_s = keyframe.sigma_s(reading, attempt, "peak")
     if len(fast) == 0:
-        return Estimate(0.0, reading.model.moment_s, speed.enough_seen(after))
+        return Estimate(0.0, peak_sigma_s, speed.enough_seen(after))
     last = int(fast[-1])
     if last + 1 >= len(speed) or last == after[-1]:
         return unknown("still moved at the end")
@@ -73,7 +75,7 @@ def _steady(reading: Reading, attempt: FoundAttempt) -> Estimate:
     share = (float(speed.value[last]) - _STEADY_M_S) / slows
     sigma_s = float(speed.sigma[last]) / slows * speed.frame_s
     at_s = float(speed.t_s[last]) + share * speed.frame_s
-    return Estimate(at_s - peak_s, math.hypot(sigma_s, reading.model.moment_s), speed.enough_seen(after))
+    return Estimate(at_s - peak_s, math.hypot(sigma_s, peak_sigma_s), speed.enough_seen(after))
 
 
 FUNCTIONS = (

@@ -9,6 +9,7 @@ import numpy as np
 from models.compiled import Counts
 from models.motions.ballistics import GRAVITY_M_S2
 from services.evaluation.attempt import FoundAttempt
+from services.evaluation.measures import keyframe
 from services.evaluation.measures.flight import ANKLE_CM, Flight, flight_of
 from services.evaluation.measures.measured import HIDDEN, Estimate, Function, unknown
 from services.evaluation.signals.posture import SideAsked
@@ -76,7 +77,8 @@ def _peak_after_top(reading: Reading, attempt: FoundAttempt) -> Estimate:
     flight = flight_of(reading, attempt)
     if isinstance(flight, str):
         return unknown(flight)
-    return Estimate(attempt.moment_s("peak") - flight.top_s, math.hypot(reading.model.moment_s, _TOP_SIGMA_S), flight.seen)
+    sigma_s = math.hypot(keyframe.sigma_s(reading, attempt, "peak"), _TOP_SIGMA_S)
+    return Estimate(attempt.moment_s("peak") - flight.top_s, sigma_s, flight.seen)
 
 
 def _travel(reading: Reading, attempt: FoundAttempt) -> Estimate:

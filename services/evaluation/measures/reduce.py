@@ -11,6 +11,7 @@ from msgspec import UNSET
 from models.arrays import Float
 from models.teaching.measure import Measure, Phase
 from services.evaluation.attempt import FoundAttempt
+from services.evaluation.measures import keyframe
 from services.evaluation.measures.catalogue import FUNCTIONS
 from services.evaluation.measures.measured import BACKWARDS, HIDDEN, OUTSIDE, Measured
 from services.evaluation.signals.catalogue import CATALOGUE
@@ -45,7 +46,7 @@ def evaluate(measure: Measure, reading: Reading, attempt: FoundAttempt) -> Measu
         raise ValueError("a measure has a signal or a function")
     signal = CATALOGUE[measure.signal]
     series = reading.of(signal, measure.side)
-    return _reduced(measure, series, attempt, "s" if measure.take.startswith("time_") else signal.unit)
+    return _reduced(measure, series, reading, attempt, "s" if measure.take.startswith("time_") else signal.unit)
 
 
 def name_of(measure: Measure) -> str:
@@ -74,7 +75,7 @@ class _Value:
     seen: bool = False
 
 
-def _reduced(measure: Measure, series: Series, attempt: FoundAttempt, unit: Unit) -> Measured:
+def _reduced(measure: Measure, series: Series, reading: Reading, attempt: FoundAttempt, unit: Unit) -> Measured:
     phases = [measure.stretch[0], measure.stretch[2]]
     if _is_against_start(measure, series):
         phases.append("start")
@@ -91,7 +92,8 @@ def _reduced(measure: Measure, series: Series, attempt: FoundAttempt, unit: Unit
         return Measured(name, math.nan, math.nan, unit, False, HIDDEN if inside == 1 else OUTSIDE)
     variance = found.sigma**2 + (0.0 if found.weights is None else series.variance(found.weights))
     for phase in moments:
-        variance += _moment_variance(measure, series, moments, phase, found.value)
+        moment_s = keyframe.sigma_s(reading, attempt, phase)
+        variance += _moment_variance(measure, series, moments, phase, moment_s, found.value)
     known = found.seen and _enough_seen(series, samples) and math.isfinite(variance)
     return Measured(name, found.value, math.sqrt(variance), unit, known, "" if known else HIDDEN)
 
@@ -169,18 +171,18 @@ def _spread(values: list[float]) -> float:
 
 
 def _moment_variance(
-    measure: Measure, series: Series, moments: Mapping[Phase, float], phase: Phase, value: float
+    measure: Measure, series: Series, moments: Mapping[Phase, float], phase: Phase, moment_s: float, value: float
 ) -> float:
     """By how much the value varies as the keyframe's instant does; beside what is not known, as on the other side of it. NaN where
     that is not known on either."""
-    moment_s = series.model.moment_s
     if not moment_s:
         return 0.0
-    earlier, later = (
-        _value(measure, series, {**moments, phase: moments[phase] + shift_s}).value for shift_s in (-moment_s, moment_s)
-    )
-    changes = ((later - earlier) / 2, later - value, value - earlier)
-    return next((change**2 for change in changes if math.isfinite(change)), math.nan)
+    changes = [
+        _value(measure, series, {**moments, phase: moments[phase] + shift_s}).value - value for shift_s in (-moment_s, moment_s)
+    ]
+    # Each by itself: where the value turns about, as it does at many a peak, earlier and later are alike, and both off.
+    known = [change**2 for change in changes if math.isfinite(change)]
+    return sum(known) / len(known) if known else math.nan
 
 
 def _share_inside(series: Series, samples: list[Sample]) -> float:

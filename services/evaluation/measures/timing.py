@@ -4,21 +4,13 @@ import math
 from collections.abc import Callable
 from typing import Final
 
-import numpy as np
-
-from models.skeleton import coco
 from models.teaching.measure import Phase
 from services.evaluation.attempt import FoundAttempt
-from services.evaluation.features import JOINTS
+from services.evaluation.measures import keyframe
 from services.evaluation.measures.measured import HIDDEN, Estimate, Function
 from services.evaluation.signals.reading import Reading
 
 _FAMILY: Final = "Tempo"
-_AROUND_S: Final = 0.1
-"""A keyframe is known by what is seen so long before and after it."""
-_LEAST_SEEN: Final = 0.5
-"""Share of the joints, over those frames; without hips nothing can be compared."""
-_HIPS: Final = (coco.INDEX["left_hip"], coco.INDEX["right_hip"])
 
 
 def _lasts(first: Phase, last: Phase) -> Callable[[Reading, FoundAttempt], Estimate]:
@@ -43,12 +35,7 @@ def _estimate(value: float, sigma: float, seen: bool) -> Estimate:
 
 
 def _seen(reading: Reading, attempt: FoundAttempt, *phases: Phase) -> bool:
-    """Whether the pupil was, around each of these keyframes: where he was not, they are but where others have theirs."""
-    track = reading.track
-    hips = np.isfinite(track.joints_m[:, _HIPS]).all(axis=(1, 2))
-    shares = np.where(hips, track.seen[:, JOINTS].mean(axis=1), 0.0)
-    around = [shares[np.abs(track.t_s - attempt.moment_s(phase)) <= _AROUND_S] for phase in phases]
-    return all(len(share) > 0 and float(share.mean()) >= _LEAST_SEEN for share in around)
+    return all(keyframe.is_seen(reading, attempt, phase) for phase in phases)
 
 
 FUNCTIONS = (
