@@ -36,7 +36,7 @@ export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 .PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions standards check-standards lock clean distclean test-faults test-mutations test-motions test-rendering bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-simulate bench-networks bench-keyframes bench-measures twin
 
 help: ## Show this list
-	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-15s %s\n", $$1, $$2}'
+	@grep -hE '^[a-z0-9-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
 
 run: setup ## Start KineBox on the built-in lesson (SOURCE=footage or footage2: films of people) and print the address of the page
 	@exec kinebox run --site $(SITE) --data $(DATA)
@@ -239,7 +239,7 @@ lock: ## Compile requirements.lock anew after a change of pyproject.toml
 	  --generate-hashes --no-emit-index-url --no-header --no-annotate --quiet -o requirements.lock
 
 clean: ## Remove what was built, but not the downloads' results
-	rm -rf $(WEB)/dist $(DATA)/kernels $(DATA)/bytecode.ready $(DATA)/bench $(DATA)/logs .mypy_cache .ruff_cache .pytest_cache
+	rm -rf $(WEB)/dist $(DATA)/kernels $(DATA)/bytecode.ready $(DATA)/bench .mypy_cache .ruff_cache .pytest_cache
 
-distclean: clean ## Remove everything that was installed or downloaded, too
-	rm -rf $(VENV) $(DATA)/networks $(FOOTAGES:%=$(DATA)/%) $(DATA)/simulated build/peers build/lock build/body build/motions $(WEB)/node_modules *.egg-info .hypothesis .import_linter_cache
+distclean: clean ## Remove everything that was installed or downloaded, too; lessons, logs and what a school taught stay
+	rm -rf $(VENV) $(DATA)/networks $(FOOTAGES:%=$(DATA)/%) $(DATA)/simulated/six_actions build/peers build/lock build/body build/motions $(WEB)/node_modules *.egg-info .hypothesis .import_linter_cache

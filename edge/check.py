@@ -43,12 +43,18 @@ def check(site: Site, rig: Rig, data: Path) -> None:
     require_equal_lengths(videos)
     for folder, names in lessons_of(site, data):
         require_rig_of_lesson(folder, read_plan(folder, names[0]), rig.select(names))
-    if site.inference.provider == "openvino" and find_spec("openvino") is None:
-        raise UserError(
-            'inference.provider = "openvino", but OpenVINO is not installed; install the extra of that name or set it to "cpu"'
-        )
+    require_provider(site)
     for name in NETWORKS:
         read_network_file(name, data)
+
+
+def require_provider(site: Site) -> None:
+    """The package of the site's execution provider must be there; UserError with the command that installs it."""
+    if site.inference.provider == "openvino" and find_spec("openvino") is None:
+        raise UserError(
+            'inference.provider = "openvino", but OpenVINO is not installed; install it with '
+            "`.venv/bin/pip install 'openvino>=2026.4'` or set the provider to \"cpu\""
+        )
 
 
 def lessons_of(site: Site, data: Path) -> list[tuple[Path, list[str]]]:

@@ -5,11 +5,10 @@ The doctor finds this by the entry point group `kinebox.inspections`. See `edge.
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from importlib.util import find_spec
 from pathlib import Path
 
 from edge.cameras.shape import VideoShape, require_calibrated_size, require_equal_lengths
-from edge.check import NETWORKS, check_video, film_of, lessons_of
+from edge.check import NETWORKS, check_video, film_of, lessons_of, require_provider
 from edge.footage.index import INDEX_NAME, Index, remedy
 from edge.perception.network_file import read_network_file
 from edge.simulation.lesson.files import FOLDER as LESSONS
@@ -39,7 +38,7 @@ def inspect(site: Site | None, rig: Rig | None, data: Path) -> list[Inspected]:
         found += [_camera(camera, rig, data, videos) for camera in site.cameras]
         found += _lengths(videos)
         found += _rigs(site, rig, data)
-        found += _provider(site)
+        found.append(_provider(site))
     return found
 
 
@@ -96,11 +95,8 @@ def _rigs(site: Site, rig: Rig | None, data: Path) -> Iterator[Inspected]:
         yield _inspected(f"calibration of lesson {folder.name}", "comparing it with the cameras that filmed", look)
 
 
-def _provider(site: Site) -> list[Inspected]:
-    if site.inference.provider != "openvino" or find_spec("openvino") is not None:
-        return []
-    fault = 'inference.provider = "openvino", but OpenVINO is not installed; install the extra of that name or set it to "cpu"'
-    return [Inspected("execution provider", "looking for the package", fault)]
+def _provider(site: Site) -> Inspected:
+    return _inspected("execution provider", "looking for its package", lambda: require_provider(site))
 
 
 def _inspected(what: str, known_by: str, look: Callable[[], object]) -> Inspected:

@@ -1,6 +1,7 @@
 """The list of lessons. The files are the truth: the index only saves reading them all, and is made anew if it is lost or broken."""
 
 import sqlite3
+import time
 from collections.abc import Iterator
 from dataclasses import astuple, dataclass, fields
 from pathlib import Path
@@ -242,7 +243,8 @@ def _read(path: Path, lesson: str, size: int, changed_ns: int) -> LessonRow:
                 title, started_s = header.title, header.started_s
                 if is_being_written(file):
                     # Reading it all each time would take longer and longer.
-                    state, seconds = "recording", max(changed_ns * 1e-9 - started_s, 0.0)
+                    # By the clock that nobody sets: this machine has run on since the lesson began.
+                    state, seconds = "recording", max(time.monotonic_ns() - header.started_ns, 0) * 1e-9
                 else:
                     contents = survey(file).contents
                     state, seconds, gaps, segments = "unfinished", contents.seconds, contents.gaps, contents.segments

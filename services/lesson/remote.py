@@ -80,13 +80,18 @@ class Remote:
         return None
 
     def _current(self) -> RecorderHealth:
-        """What the recorder does now."""
+        """What the recorder does now; one that is being started again is waited for, and goes on with its lesson."""
         health = self.listen(BOX_HEARD_WITHIN_S)
         if health is None and self._someone:
             health = self.listen(HEARD_WITHIN_S - BOX_HEARD_WITHIN_S)
         if health is None:
             whom = "the box's recorder is not heard" if self._someone else "no part of the box is heard"
             raise UserError(f"{whom}; see what 'kinebox run' says about it, or start the box again")
+        end_s = time.monotonic() + DONE_WITHIN_S
+        while _comes_back(health) and (later := self.listen(max(end_s - time.monotonic(), 0.0))) is not None:
+            health = later
+        if _comes_back(health):
+            raise UserError(f"the recorder is not back yet: {health.reason}; nothing was changed, try again")
         if health.state == "failed" or health.recorder is None:
             raise UserError(f"the recorder cannot record: {health.reason or 'it does not say why'}")
         return health.recorder
@@ -108,6 +113,11 @@ class Remote:
                 raise UserError(f"the recorder cannot {what}: {health.reason}")
         reason = f": {self.newest.reason}" if self.newest is not None and self.newest.reason else ""
         raise UserError(f"the recorder did not {what} within {DONE_WITHIN_S:g} s{reason}")
+
+
+def _comes_back(health: Health) -> bool:
+    """Whether there is no recorder at the moment, but will be."""
+    return health.state == "starting" or any(trouble.code == "restarting" for trouble in health.troubles)
 
 
 def refused(health: Health) -> bool:

@@ -30,6 +30,7 @@ class Post:
         reported: the state that a person was last told.
         told: the troubles that a person was told of since the process was well.
         first_heard_s: when the running process spoke first, on CLOCK_MONOTONIC; None if it has not.
+        works_since_s: when it first said that it is more than starting; None if it has not.
         ended_s: when it ended last or could not be started, on CLOCK_MONOTONIC; None if it never did.
         last_end: what became of it then, as a verb.
         hangs: the running process was found hung, and is being killed for it.
@@ -48,6 +49,7 @@ class Post:
     reported: str = "ok"
     told: set[TroubleCode] = field(default_factory=set)
     first_heard_s: float | None = None
+    works_since_s: float | None = None
     ended_s: float | None = None
     last_end: str = ""
     hangs: bool = False
@@ -72,7 +74,10 @@ class Post:
         """
         if self.first_heard_s is None:
             self.first_heard_s = now_s
-        self.worked = self.worked or state != "starting"
+        if state != "starting":
+            self.worked = True
+            if self.works_since_s is None:
+                self.works_since_s = now_s
         if state in _UNSETTLED and now_s - self.first_heard_s < SETTLES_WITHIN_S:
             return False
         new = set(troubles) - self.told
@@ -83,7 +88,7 @@ class Post:
     def ended(self, code: int, user_error: str, now_s: float, config: SupervisorConfig) -> None:
         """The process ended: decide what becomes of the post."""
         self.child = None
-        self.reported, self.first_heard_s = "ok", None
+        self.reported, self.first_heard_s, self.works_since_s = "ok", None, None
         self.told = set()
         if code == USER_ERROR_CODE and user_error and not self.hangs:
             self._refused(user_error, now_s, config)

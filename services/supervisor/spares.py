@@ -14,7 +14,7 @@ KEPT_FOR = (ROUTER, "tablet")
 """Those without whom nobody sees a figure. A camera that starts anew is stood in for by the others; while the evaluation does, at
 most the attempt that is under way goes without a word, which is not worth the memory of a second one."""
 AFTER_S = 3.0
-"""So long a post must have been manned and heard: the box that starts, or mends itself, needs the CPU more."""
+"""So long a post must have been at work: the box that starts, compiles or mends itself needs the CPU more."""
 AGAIN_AFTER_S = 60.0
 """A spare that ended by itself is not replaced sooner."""
 
@@ -46,12 +46,12 @@ class Spares:
         spare.begin()
         return spare
 
-    def keep(self, spec: ChildSpec, healthy_since_s: float | None, now_s: float) -> None:
+    def keep(self, spec: ChildSpec, works_since_s: float | None, now_s: float) -> None:
         """Look after the spare of a post: pass on what it says, bury one that ended, start one that is missing.
 
         Args:
             spec: of the post.
-            healthy_since_s: when the process of the post was heard first; None if it was not.
+            works_since_s: when the process of the post first said that it works; None if it has not.
             now_s: CLOCK_MONOTONIC.
         """
         spare = self._waiting.get(spec.name)
@@ -61,7 +61,7 @@ class Spares:
                 spare.close()
                 del self._waiting[spec.name]
                 self._not_before_s[spec.name] = now_s + AGAIN_AFTER_S
-        elif healthy_since_s is not None and now_s >= max(healthy_since_s + AFTER_S, self._not_before_s.get(spec.name, 0.0)):
+        elif works_since_s is not None and now_s >= max(works_since_s + AFTER_S, self._not_before_s.get(spec.name, 0.0)):
             try:
                 self._waiting[spec.name] = self._begin(spec)
             except OSError as error:

@@ -139,7 +139,7 @@ class Supervisor:
             for post in self._posts:
                 self._attend(post, now_s)
                 if self._site.supervisor.spares and post.name in KEPT_FOR and post.child is not None:
-                    self._spares.keep(post.spec, post.first_heard_s, now_s)
+                    self._spares.keep(post.spec, post.works_since_s, now_s)
             self._kill_hung(now_s)
             self._look_at_machine(now_s)
             self._journal.settle()

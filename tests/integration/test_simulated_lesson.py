@@ -218,7 +218,7 @@ def test_a_machine_that_cannot_render_says_what_to_install(tmp_path: Path) -> No
     arguments = command("tiny", "--data", new_data(tmp_path))
     done = subprocess.run(arguments, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == USER_ERROR_CODE
-    assert done.stderr.strip().endswith("`pip install 'kinebox[simulation]'`")
+    assert done.stderr.strip().endswith("`.venv/bin/pip install 'moderngl>=5.12'`")
     assert len(done.stderr.strip().splitlines()) == 1
 
 

@@ -26,6 +26,7 @@ def seen_by(index: int, t_ns: int, epoch: int = 0, sigma_px: float = 2.0) -> Obs
 def test_pictures_of_scattered_times_never_break_the_window(seed: int) -> None:
     random = np.random.default_rng(seed)
     state = initial_state(RIG)
+    seen = []
     for tick in range(90):
         t_ns = T0_NS + round(tick * 1e9 / 30)
         for index in range(4):
@@ -37,6 +38,8 @@ def test_pictures_of_scattered_times_never_break_the_window(seed: int) -> None:
             assert np.isfinite(motion.joints_m).all()
             assert np.isfinite(motion.covariance_m2).all()
             assert np.abs(motion.joints_m[known] - JOINTS[known]).max(initial=0.0) < 1.0
+            seen.append(int((motion.states == JointState.SEEN).sum()))
+    assert max(seen[-30:]) >= 9, "the pupil is still found"
     predict_views(state, t_ns)
 
 
@@ -49,6 +52,10 @@ def test_extreme_sigmas_are_survived(sigma_px: float) -> None:
             state, _ = step(state, seen_by(index, t_ns, sigma_px=sigma_px if index % 2 else 2.0), CONFIG)
         state, output = step(state, Tick(t_ns), CONFIG)
         assert all(np.isfinite(motion.joints_m).all() for motion in output.motions)
+    assert output.motions
+    for motion in output.motions:
+        assert (motion.states == JointState.SEEN).all(), "two cameras are honest"
+        assert np.abs(motion.joints_m - JOINTS).max() < 0.1
 
 
 def test_one_cameras_wrong_epoch_does_not_blind_the_room_for_good() -> None:

@@ -199,9 +199,11 @@ def test_vanishing_sigmas_full_scores_and_empty_pictures_do_no_harm() -> None:
             persons = tuple(msgspec.structs.replace(p, sigma_px=np.full(coco.COUNT, 1e-30, np.float32)) for p in event.persons)
             event = msgspec.structs.replace(event, persons=() if number % 7 == 0 else persons)  # noqa: PLW2901
         events.append(event)
-    for motion in play(gym.rig, events).live:
+    live = play(gym.rig, events).live
+    for motion in live:
         assert np.isfinite(motion.joints_m).all()
         assert np.isfinite(motion.covariance_m2).all()
+    assert (live[-1].states == JointState.SEEN).sum() >= 9, "the pupil is still found"
 
 
 def test_predicted_crops_hold_the_pupil() -> None:

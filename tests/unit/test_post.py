@@ -36,6 +36,19 @@ def test_another_trouble_is_told_though_the_state_stays_and_one_that_comes_and_g
     assert post.reports("degraded", ("camera_moved", "camera_unheard"), later_s)
 
 
+def test_a_process_that_compiles_when_it_starts_is_heard_and_not_yet_at_work() -> None:
+    """A spare that is begun meanwhile would compile the same, beside it."""
+    post = Post(ChildSpec("fusion"))
+    for now_s in (100.0, 110.0):
+        post.reports("starting", ("getting_ready",), now_s)
+        assert (post.first_heard_s, post.works_since_s) == (100.0, None)
+    post.reports("degraded", (), 120.0)
+    post.reports("ok", (), 130.0)
+    assert (post.first_heard_s, post.works_since_s) == (100.0, 120.0)
+    post.ended(1, "", 140.0, SupervisorConfig())
+    assert (post.first_heard_s, post.works_since_s) == (None, None)
+
+
 def test_a_failure_is_told_at_once() -> None:
     assert Post(ChildSpec("fusion")).reports("failed", (), 100.0)
 

@@ -25,7 +25,7 @@ def graphics() -> "moderngl.Context":
     try:
         import moderngl  # noqa: PLC0415 - an extra: only who renders needs it
     except ImportError as error:
-        raise UserError(f"rendering needs moderngl ({error}); install it with `pip install 'kinebox[simulation]'`") from error
+        raise UserError(f"rendering needs moderngl ({error}); install it with `.venv/bin/pip install 'moderngl>=5.12'`") from error
     try:
         context = moderngl.create_context(standalone=True, backend="egl", require=_VERSION)  # type: ignore[arg-type]  # its stub is wrong
     except Exception as error:  # moderngl raises Exception itself, with what the driver said
