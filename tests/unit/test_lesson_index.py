@@ -167,12 +167,15 @@ def test_a_lesson_of_an_impossible_time_is_listed_as_damaged(tmp_path: Path, fie
     assert f"{field} is no time" in row.problem
 
 
-def test_the_lesson_that_is_being_recorded_is_listed_as_such_and_when_its_recorder_died_as_unfinished(tmp_path: Path) -> None:
+def test_the_lesson_that_is_being_recorded_is_listed_as_such_and_when_its_recorder_died_as_unfinished(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     lessons = LessonIndex(tmp_path)
     writer = LessonWriter.create(tmp_path, "a", header("7b"))
     for k in range(4):
         writer.append(part(BEGIN_NS, k))
-    os.utime(writer.path, ns=(0, 1_700_000_065 * SECOND_NS))
+    os.utime(writer.path, ns=(0, 1_900_000_065 * SECOND_NS))  # The machine got the time of day meanwhile.
+    monkeypatch.setattr("services.lesson.index.time.monotonic_ns", lambda: writer.header.started_ns + 60 * SECOND_NS)
     (row,) = lessons.lessons()
     assert (row.title, row.state) == ("7b", "recording")
     assert row.seconds == pytest.approx(60.0)
