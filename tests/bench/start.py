@@ -4,8 +4,6 @@ The browser waits already, as a tablet in the gym does; it draws in software her
 """
 
 import argparse
-import os
-import shutil
 import socket
 import statistics
 import subprocess
@@ -17,11 +15,11 @@ from playwright.sync_api import Page, sync_playwright
 
 from models.config.site import decode_site
 from tests.bench.report import Report
+from tests.chromium import ARGUMENTS, NONE, chromium
 
 BARS = {"start_s.median": ("<=", 5.0)}
 SHOWN = """() => { const d = document.querySelector('.page')?.dataset;
     return d && d.phase === 'live' && Number(d.figures) >= 1 && Number(d.coloured) > 0; }"""
-ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 LONGEST_S = 60.0
 
 
@@ -56,14 +54,14 @@ def main() -> None:
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--times", type=int, default=7)
     arguments = parser.parse_args()
-    chromium = os.environ.get("KINEBOX_CHROMIUM") or shutil.which("chromium") or shutil.which("google-chrome")
-    if chromium is None:
-        raise SystemExit("no Chromium: install it (Debian: apt-get install chromium) or name one in KINEBOX_CHROMIUM")
+    path = chromium()
+    if path is None:
+        raise SystemExit(NONE)
     (arguments.data / "bench").mkdir(parents=True, exist_ok=True)
     port = decode_site(arguments.site.read_bytes(), arguments.site).tablet.port
     report = Report("bench-start")
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=ARGUMENTS)
+        browser = playwright.chromium.launch(executable_path=path, args=list(ARGUMENTS))
         page = browser.new_page(viewport={"width": 1280, "height": 800})
         taken = []
         for _ in range(arguments.times):

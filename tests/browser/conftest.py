@@ -1,33 +1,19 @@
 """Chromium, and a synthetic room for it to show.
 
-The browser is Debian's or the one that `KINEBOX_CHROMIUM` names. Where there is none the tests are skipped aloud, and fail if
-`CI` is set. Of Debian's two, the one that has no window of its own comes first: it draws the same pages for less CPU.
+Where there is no browser the tests are skipped aloud, and fail if `CI` is set.
 """
 
 import os
-import shutil
 from collections.abc import Iterator
-from typing import Any, Protocol
+from typing import Any, NoReturn, Protocol
 
 import pytest
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from services.tablet.page import PAGE
 from tests.browser.room import Room
+from tests.chromium import ARGUMENTS, NONE, chromium
 
-_ARGUMENTS = (
-    "--no-sandbox",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    # Test machines have no GPU. Asked for one in vain, the browser draws WebGL in software and puts pages together without it;
-    # asked for software at once, it would do both by WebGL's software, for three times the CPU.
-    "--use-angle=gl",
-    "--enable-unsafe-swiftshader",
-)
-_BROWSERS = ("chromium-headless-shell", "chromium", "google-chrome")
 _GENEROUS_MS = 60_000
 DRAWN = 0.5
 """Pixels that are drawn a pixel of the layout, each way: WebGL in software is slow."""
@@ -40,14 +26,7 @@ window.cancelAnimationFrame = (request) => clearTimeout(request);
 """
 
 
-def _chromium() -> str:
-    path = os.environ.get("KINEBOX_CHROMIUM") or next(filter(None, map(shutil.which, _BROWSERS)), None)
-    if path is None:
-        _missing("no Chromium: install it (Debian: apt-get install chromium) or name one in KINEBOX_CHROMIUM")
-    return str(path)
-
-
-def _missing(reason: str) -> None:
+def _missing(reason: str) -> NoReturn:
     if os.environ.get("CI"):
         pytest.fail(reason)
     pytest.skip(reason)
@@ -58,9 +37,11 @@ def _missing(reason: str) -> None:
 def browser() -> Iterator[Browser]:
     if not (PAGE / "index.html").is_file():
         _missing("the page is not built: run 'make web'")
-    path = _chromium()
+    path = chromium()
+    if path is None:
+        _missing(NONE)
     with sync_playwright() as playwright:
-        launched = playwright.chromium.launch(executable_path=path, args=list(_ARGUMENTS))
+        launched = playwright.chromium.launch(executable_path=path, args=list(ARGUMENTS))
         yield launched
         launched.close()
 
