@@ -207,6 +207,22 @@ describe('the line beside a measure', () => {
     expect(measure({ value: 400 })!.at).toBeGreaterThan(measure({ value: 400 })!.bandTo);
   });
 
+  it('is the same line for every attempt, so that two of them can be compared by eye', () => {
+    for (const bounds of [{}, { low: null }, { high: null }]) {
+      const values = [-20, 40, 55, 85, 95, 300];
+      const drawn = values.flatMap((value) => [1, 30].map((sigma) => measure({ ...bounds, value, sigma })!));
+      expect(new Set(drawn.map(({ bandFrom }) => bandFrom)).size).toBe(1);
+      expect(new Set(drawn.map(({ bandTo }) => bandTo)).size).toBe(1);
+      const places = drawn.map(({ at }) => at);
+      expect(places).toEqual([...places].sort((a, b) => a - b));
+    }
+  });
+
+  it('says of a value that is further away than the line is long that it is', () => {
+    expect([19, 21, 109, 111].map((value) => measure({ value })!.beyond)).toEqual(['start', null, null, 'end']);
+    expect(measure({ value: 111 })!.at).toBe(100);
+  });
+
   it('goes on for ever where there is no bound', () => {
     expect(measure({ high: null })!.bandTo).toBe(100);
     expect(measure({ low: null })!.bandFrom).toBe(0);
@@ -220,7 +236,8 @@ describe('the line beside a measure', () => {
 
   it('stays on the page whatever the numbers are', () => {
     for (const change of [{ value: 0, low: 0, high: 0 }, { value: 1e9 }, { sigma: 1e9 }, { value: -1e9, high: null }]) {
-      for (const place of Object.values(measure(change)!)) {
+      const { beyond: _, ...places } = measure(change)!;
+      for (const place of Object.values(places)) {
         expect(place).toBeGreaterThanOrEqual(0);
         expect(place).toBeLessThanOrEqual(100);
       }

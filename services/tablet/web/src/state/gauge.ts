@@ -5,36 +5,40 @@ export interface Gauge {
   bandFrom: number;
   bandTo: number;
   at: number;
+  /** Past which of the line's ends the value lies. */
+  beyond: 'start' | 'end' | null;
   doubtFrom: number;
   doubtTo: number;
 }
 
-/** So much of the line lies on either side of what is to be seen. */
-const MARGIN = 0.12;
+type Bounds = Pick<AttemptMeasure, 'low' | 'high'>;
 
-/** What to draw of a measure; null where there is no value, or nothing to compare it with. */
-export function gauge({
-  value,
-  sigma,
-  low,
-  high,
-}: Pick<AttemptMeasure, 'value' | 'sigma' | 'low' | 'high'>): Gauge | null {
-  if (value === null || (low === null && high === null)) return null;
+/**
+ * What to draw of a measure; null where there is no value, or nothing to compare it with.
+ *
+ * The line is as long for every attempt, so that two of them can be compared by eye: what lies beyond it is drawn at its end.
+ */
+export function gauge({ value, sigma, ...bounds }: Bounds & Pick<AttemptMeasure, 'value' | 'sigma'>): Gauge | null {
+  const ends = endsOf(bounds);
+  if (value === null || ends === null) return null;
+  const { low, high } = bounds;
   const doubt = sigma ?? 0;
-  const bound = low ?? high!;
-  // Where good goes on for ever, the line shows as much of it as lies between the value and the bound, and a little.
-  const reach = Math.max(Math.abs(value - bound), 3 * doubt, 0.1 * Math.abs(bound), 1e-9);
-  const [first, last] = [low ?? high! - reach, high ?? low! + reach];
-  const [from, to] = [Math.min(first, value - doubt), Math.max(last, value + doubt)];
-  const spare = MARGIN * (to - from || 1);
-  const start = from - (low === null && first === from ? 0 : spare);
-  const end = to + (high === null && last === to ? 0 : spare);
+  const [start, end] = ends;
   const place = (x: number): number => Math.min(Math.max((100 * (x - start)) / (end - start), 0), 100);
   return {
     bandFrom: low === null ? 0 : place(low),
     bandTo: high === null ? 100 : place(high),
     at: place(value),
+    beyond: value < start ? 'start' : value > end ? 'end' : null,
     doubtFrom: place(value - doubt),
     doubtTo: place(value + doubt),
   };
+}
+
+/** The line's ends: on either side of what is good as much again; where good goes on for ever, as much as the bound is large. */
+function endsOf({ low, high }: Bounds): [number, number] | null {
+  const bound = low ?? high;
+  if (bound === null) return null;
+  const reach = (high ?? bound) - (low ?? bound) || Math.abs(bound) || 1;
+  return [(low ?? bound) - reach, (high ?? bound) + reach];
 }
