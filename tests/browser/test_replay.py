@@ -33,10 +33,21 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 
 @contextmanager
-def playing(lesson: Path, folder: Path) -> Iterator[str]:
-    """`kinebox replay`, which goes on for ever; the address of its page."""
+def playing(lesson: Path, folder: Path, *options: str) -> Iterator[str]:
+    """`kinebox replay`, which goes on for ever unless `options` say otherwise; the address of its page."""
     port = free_port()
-    command = [sys.executable, "-m", "services.cli.main", "replay", str(lesson), "--port", str(port), "--data", str(ROOT / "build")]
+    command = [
+        sys.executable,
+        "-m",
+        "services.cli.main",
+        "replay",
+        str(lesson),
+        "--port",
+        str(port),
+        "--data",
+        str(ROOT / "build"),
+        *options,
+    ]
     with (
         (folder / "output").open("wb") as output,
         subprocess.Popen(bound(command), cwd=ROOT, stdout=output, stderr=output) as process,
@@ -83,3 +94,11 @@ def test_a_replay_is_accessible_and_fits_on_a_phone(page: Page, address: str) ->
     page.evaluate(Path(AXE).read_text(encoding="utf-8"))
     found = page.evaluate("axe.run({runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'best-practice']})")
     assert [(violation["id"], [node["html"] for node in violation["nodes"]]) for violation in found["violations"]] == []
+
+
+def test_the_end_of_a_replay_is_said_and_is_no_lost_connection(page: Page, tmp_path: Path) -> None:
+    with playing(write_gym_lesson(tmp_path, Gym(seconds=8.0)), tmp_path, "--once") as address:
+        shown = open_replay(page, address)
+        shown.wait_for_phase("ended")
+        expect(page.get_by_text("The replay has ended")).to_be_visible()
+        expect(page.get_by_text("No connection")).to_have_count(0)

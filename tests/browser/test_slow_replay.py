@@ -123,6 +123,8 @@ def test_the_scrubber_goes_to_keyframes_and_to_any_moment_by_key(tablet: Page, r
         tablet.get_by_role("button", name=name, exact=True).click()
         at_s = made.frame_of(made.keyframes_ns[index]) * made.frame_ns * 1e-9
         shown.wait_until(f"Math.abs(Number(d.position) - {at_s}) < 0.02")
+        expect(tablet.locator("[data-keyframe][aria-current=true]")).to_have_text(name)
+        expect(tablet.locator(".ticks .reached")).to_have_count(1)
     scrubber = tablet.get_by_role("slider")
     scrubber.focus()
     tablet.keyboard.press("Home")

@@ -31,6 +31,8 @@ export class Viewer {
   private underWay = 0;
   private pose: Pose = standing();
   private hasFigure = false;
+  /** A lesson is played, or was when the box was heard last. */
+  private played = false;
   private droppedMs = -Infinity;
   private delayMs: number | null = null;
   private figures = 0;
@@ -135,6 +137,7 @@ export class Viewer {
     const nowMs = performance.now();
     this.compareClocks(status.box_time_us);
     this.room.status = status;
+    this.played = status.replay !== null;
     this.lesson.activity.confirm(status.evaluation.activity);
     this.lesson.pupil.confirm(status.evaluation.pupil);
     this.movesSinceMs = status.evaluation.state === 'moving' ? (this.movesSinceMs ?? nowMs) : null;
@@ -280,6 +283,7 @@ export class Viewer {
       connected: this.link.connected,
       everConnected: this.link.everConnected,
       failures: this.link.failures,
+      replayEnded: this.link.endedOnPurpose && this.played,
       hasFigure: this.hasFigure,
       stale: this.freshness.isStale(nowMs),
       maker: makerOf(this.room.status),

@@ -111,6 +111,7 @@ describe('the phase', () => {
     connected: true,
     everConnected: true,
     failures: 0,
+    replayEnded: false,
     hasFigure: true,
     stale: false,
     maker: 'works',
@@ -119,6 +120,8 @@ describe('the phase', () => {
   };
 
   it.each<[string, Partial<PhaseInputs>, string]>([
+    ['a lesson that was played to its end', { connected: false, replayEnded: true }, 'ended'],
+    ['another lesson after one that ended', { replayEnded: true }, 'live'],
     ['fresh motion', {}, 'live'],
     ['no connection yet', { connected: false, everConnected: false }, 'connecting'],
     ['several failures', { connected: false, everConnected: false, failures: 3 }, 'offline'],

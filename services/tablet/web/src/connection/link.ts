@@ -16,6 +16,8 @@ const PING_PERIOD_MS = 2000;
 /** The server speaks twice a second. After this silence the connection is dead, whatever the operating system believes. */
 const SILENCE_MS = 4000;
 const OPENING_MS = 5000;
+/** What a server that is ended on purpose says at last. */
+const GOODBYE = 1012;
 
 export interface LinkEvents {
   /** A binary motion frame came. It counts as under way until `acknowledgeMotions`. */
@@ -33,6 +35,8 @@ export class Link {
   connected = false;
   everConnected = false;
   failures = 0;
+  /** The connection is gone because the box's server was ended on purpose. */
+  endedOnPurpose = false;
 
   private socket: WebSocket | null = null;
   private motions = 0;
@@ -94,11 +98,12 @@ export class Link {
     this.socket = socket;
     this.heardMs = performance.now();
     // A socket that was given up may still report; only the current one is listened to.
-    const current = (act: () => void) => () => {
-      if (socket === this.socket) act();
+    socket.onopen = () => {
+      if (socket === this.socket) this.opened();
     };
-    socket.onopen = current(() => this.opened());
-    socket.onclose = current(() => this.closed());
+    socket.onclose = ({ code }) => {
+      if (socket === this.socket) this.closed(code);
+    };
     socket.onmessage = (event: MessageEvent<ArrayBuffer | string>) => {
       if (socket === this.socket) this.receive(event.data);
     };
@@ -107,6 +112,7 @@ export class Link {
   private opened(): void {
     this.connected = true;
     this.everConnected = true;
+    this.endedOnPurpose = false;
     this.failures = 0;
     this.motions = 0;
     this.statuses = 0;
@@ -117,9 +123,10 @@ export class Link {
     this.events.changed();
   }
 
-  private closed(): void {
+  private closed(code?: number): void {
     this.socket = null;
     this.connected = false;
+    this.endedOnPurpose ||= code === GOODBYE;
     const delayMs = reconnectDelayMs(this.failures, Math.random());
     this.failures += 1;
     this.reopening = setTimeout(() => this.open(), delayMs);

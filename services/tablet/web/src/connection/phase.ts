@@ -4,6 +4,7 @@ import type { Status } from '../protocol/messages';
 export type Phase =
   | 'connecting' // no connection yet
   | 'offline' // the connection is gone
+  | 'ended' // so is what was played, and that was its end
   | 'failed' // what makes the figure failed for good
   | 'searching' // connected; no figure yet, and whether there is a pupil is not known
   | 'waiting' // connected; nobody is there
@@ -19,6 +20,8 @@ export interface PhaseInputs {
   connected: boolean;
   everConnected: boolean;
   failures: number;
+  /** A lesson was played, and the box said goodbye. */
+  replayEnded: boolean;
   /** A figure with at least one seen joint was drawn on this connection. */
   hasFigure: boolean;
   stale: boolean;
@@ -34,6 +37,7 @@ export interface PhaseInputs {
 const PATIENCE = 3;
 
 export function phaseOf(inputs: PhaseInputs): Exclude<Phase, 'unable'> {
+  if (!inputs.connected && inputs.replayEnded) return 'ended';
   if (!inputs.connected) return inputs.everConnected || inputs.failures >= PATIENCE ? 'offline' : 'connecting';
   if (inputs.maker === 'failed') return 'failed';
   if (inputs.hasFigure && !inputs.stale && inputs.maker === 'works') return 'live';

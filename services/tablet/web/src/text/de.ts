@@ -13,6 +13,11 @@ const phases: Words['phases'] = {
     title: 'Keine Verbindung zur Box',
     words: 'Neuer Versuch läuft. Ist die Box eingeschaltet und das Tablet in ihrem Netz?',
   },
+  ended: {
+    pill: 'Zu Ende',
+    title: 'Die Wiedergabe ist zu Ende',
+    words: 'Die nächste erscheint hier, sobald sie beginnt.',
+  },
   failed: {
     pill: 'Ausgefallen',
     title: 'Die Box erzeugt keine Figur mehr',
@@ -87,8 +92,9 @@ export const de: Words = {
     title: 'Übung',
     choose: 'Übung wählen',
     any: 'Jede Übung',
+    anyShort: 'Jede',
     anyHint: 'Die Box erkennt, welche es ist',
-    preset: 'Voreingestellt, nicht gewählt',
+    preset: 'Aus den Einstellungen',
     unknown: 'Nicht bekannt',
   },
 
@@ -124,6 +130,7 @@ export const de: Words = {
     starting: { title: 'Macht sich bereit', words: 'Gleich werden Versuche beurteilt.' },
     off: { title: 'Versuche werden nicht beurteilt', words: 'Der Teil der Box, der sie beurteilt, arbeitet nicht.' },
     past: 'Von vor dem Abbruch der Verbindung',
+    onlyNow: (activity) => `Jetzt zählt nur: ${activity}`,
     silence: {
       fine: 'Diesmal keine Korrektur',
       unsure: 'Diesmal nichts Klares zu korrigieren',
@@ -171,6 +178,7 @@ export const de: Words = {
       red: 'Daneben',
       grey: 'Nicht sicher',
       standard: 'Vorbild',
+      amiss: 'Abweichung',
     },
   },
 

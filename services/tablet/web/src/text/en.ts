@@ -38,6 +38,7 @@ const phases: Record<Phase, { pill: string; title: string; words: string }> = {
     title: 'No connection to the box',
     words: 'Trying again. Is the box switched on, and the tablet in its network?',
   },
+  ended: { pill: 'Ended', title: 'The replay has ended', words: 'The next one is shown here as soon as it begins.' },
   failed: {
     pill: 'Failed',
     title: 'The box makes no figure any more',
@@ -131,9 +132,11 @@ export const en = {
     title: 'Activity',
     choose: 'Choose the activity',
     any: 'Any activity',
+    /** Under the title. */
+    anyShort: 'Any',
     anyHint: 'The box finds out which',
     /** The site file says so, and nobody has chosen it. */
-    preset: 'Preset, not chosen',
+    preset: 'From the settings',
     unknown: 'Not known',
   },
 
@@ -169,6 +172,8 @@ export const en = {
     starting: { title: 'Getting ready', words: 'In a moment attempts are judged.' },
     off: { title: 'Attempts are not judged', words: 'The part of the box that judges them is not at work.' },
     past: 'From before the connection was lost',
+    /** An attempt at something else is shown. */
+    onlyNow: (activity: string): string => `Only this counts now: ${activity}`,
     /** What it means that nothing is corrected. */
     silence: {
       fine: 'No correction this time',
@@ -218,7 +223,14 @@ export const en = {
       string
     >,
     mirror: 'Mirror',
-    legend: { green: 'As it should be', yellow: 'A little off', red: 'Off', grey: 'Not sure', standard: 'Model' },
+    legend: {
+      green: 'As it should be',
+      yellow: 'A little off',
+      red: 'Off',
+      grey: 'Not sure',
+      standard: 'Model',
+      amiss: 'How far off',
+    },
   },
 
   cameras: {

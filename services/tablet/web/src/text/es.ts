@@ -13,6 +13,11 @@ const phases: Words['phases'] = {
     title: 'Sin conexión con la caja',
     words: 'Se intenta de nuevo. ¿Está encendida la caja y la tableta en su red?',
   },
+  ended: {
+    pill: 'Terminado',
+    title: 'La reproducción ha terminado',
+    words: 'La siguiente se muestra aquí en cuanto empiece.',
+  },
   failed: {
     pill: 'Fallo',
     title: 'La caja ya no genera la figura',
@@ -88,8 +93,9 @@ export const es: Words = {
     title: 'Actividad',
     choose: 'Elegir la actividad',
     any: 'Cualquier actividad',
+    anyShort: 'Cualquiera',
     anyHint: 'La caja reconoce cuál es',
-    preset: 'Predefinida, sin elegir',
+    preset: 'Según los ajustes',
     unknown: 'Desconocida',
   },
 
@@ -127,6 +133,7 @@ export const es: Words = {
     starting: { title: 'Preparándose', words: 'Enseguida se evalúan los intentos.' },
     off: { title: 'Los intentos no se evalúan', words: 'La parte de la caja que los evalúa no está en marcha.' },
     past: 'De antes de perder la conexión',
+    onlyNow: (activity) => `Ahora solo cuenta: ${activity}`,
     silence: {
       fine: 'Esta vez, sin correcciones',
       unsure: 'Esta vez, nada claro que corregir',
@@ -168,7 +175,14 @@ export const es: Words = {
     keyframeLabel: 'Ir a',
     standard: { ghost: 'Modelo encima', beside: 'Modelo al lado', off: 'Sin modelo' },
     mirror: 'Espejo',
-    legend: { green: 'Como debe ser', yellow: 'Algo desviado', red: 'Desviado', grey: 'No seguro', standard: 'Modelo' },
+    legend: {
+      green: 'Como debe ser',
+      yellow: 'Algo desviado',
+      red: 'Desviado',
+      grey: 'No seguro',
+      standard: 'Modelo',
+      amiss: 'Desviación',
+    },
   },
 
   cameras: {

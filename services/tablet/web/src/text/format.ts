@@ -75,6 +75,11 @@ export function formats(locale: string, ofHeight: string): Formats {
   };
 }
 
+/** A sentence with codes in it, none of which is broken at its hyphen. */
+export function unbroken(sentence: string): string {
+  return sentence.replace(/-(?=[0-9])/g, '\u2011');
+}
+
 /** Minutes and seconds, with hours where there are any; the same in all languages. */
 function clock(s: number | null): string {
   if (s === null) return NONE;

@@ -6,6 +6,7 @@ const listed = (numbers: number[]): string => numbers.join('、');
 const phases: Words['phases'] = {
   connecting: { pill: '连接中', title: '正在连接主机', words: '请稍候。' },
   offline: { pill: '无连接', title: '与主机没有连接', words: '正在重试。主机是否已开机，平板是否在它的网络中？' },
+  ended: { pill: '已结束', title: '播放已结束', words: '下一次播放开始后会显示在这里。' },
   failed: { pill: '故障', title: '主机不再生成人形', words: '其中一个部分停止次数过多，已被关闭。请重新启动主机。' },
   searching: { pill: '等待', title: '正在寻找学生', words: '两台摄像机看到学生后，人形就会出现。' },
   waiting: { pill: '等待', title: '画面中没有人', words: '学生站到两台摄像机都能看到的位置后，人形就会出现。' },
@@ -55,8 +56,9 @@ export const zh: Words = {
     title: '项目',
     choose: '选择项目',
     any: '任意项目',
+    anyShort: '任意',
     anyHint: '由主机自动识别',
-    preset: '预设，未选择',
+    preset: '来自设置',
     unknown: '未知',
   },
 
@@ -90,6 +92,7 @@ export const zh: Words = {
     starting: { title: '正在准备', words: '马上就能评价动作。' },
     off: { title: '没有在评价动作', words: '主机中负责评价的部分没有运行。' },
     past: '连接中断之前的内容',
+    onlyNow: (activity) => `现在只计：${activity}`,
     silence: {
       fine: '这次没有要纠正的',
       unsure: '这次没有明确要纠正的',
@@ -131,7 +134,14 @@ export const zh: Words = {
     keyframeLabel: '跳到',
     standard: { ghost: '示范重叠', beside: '示范并排', off: '不显示示范' },
     mirror: '镜像',
-    legend: { green: '符合要求', yellow: '略有偏差', red: '偏差大', grey: '不确定', standard: '示范' },
+    legend: {
+      green: '符合要求',
+      yellow: '略有偏差',
+      red: '偏差大',
+      grey: '不确定',
+      standard: '示范',
+      amiss: '偏差程度',
+    },
   },
 
   cameras: {
