@@ -1,5 +1,6 @@
 """Attempts on the page: what is said of them, the list, and the choice of what pupils do."""
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -168,7 +169,7 @@ def test_a_school_s_language_is_spoken_to_a_tablet_of_another_one(tablets: Table
 def test_the_choice_of_an_activity_reaches_the_box_and_comes_back(tablet: Page, room: Room, words: Words) -> None:
     open_live(tablet, room)
     chooser = tablet.locator(".activity")
-    expect(chooser).to_contain_text("Any activity")
+    expect(chooser).to_contain_text("Any")
     chooser.click()
     choices = tablet.get_by_role("dialog").locator("[data-choose]")
     expect(choices).to_have_count(len(ACTIONS))
@@ -184,6 +185,20 @@ def test_the_choice_of_an_activity_reaches_the_box_and_comes_back(tablet: Page, 
     tablet.get_by_role("dialog").get_by_text("Any activity").click()
     expect(chooser).to_have_attribute("data-activity", "any")
     assert _until(tablet, lambda: room.activity == "")
+
+
+def test_an_attempt_at_what_does_not_count_any_more_is_faded_and_that_is_said(tablet: Page, room: Room, words: Words) -> None:
+    shown = open_live(tablet, room)
+    see(shown, room, tried(SHOT, FAULT))
+    card = tablet.locator(".feedback")
+    expect(card.locator("[data-only-now]")).to_have_count(0)
+    tablet.locator(".activity").click()
+    tablet.locator("[data-choose=squat]").click()
+    expect(card.locator("[data-only-now]")).to_contain_text(words.actions["squat"]["title"]["en"])
+    expect(card).to_have_class(re.compile(r"\bold\b"))
+    see(shown, room, tried("squat"))
+    expect(card.locator("[data-only-now]")).to_have_count(0)
+    expect(card).not_to_have_class(re.compile(r"\bold\b"))
 
 
 def _until(page: Page, condition: Callable[[], bool]) -> bool:
