@@ -13,6 +13,8 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 LANGUAGES = ("en", "de", "es", "zh")
 SCREENS = [(1280, 800), (390, 844)]
+ARM = 0.4 / 2.4
+"""How far raised hands are from the middle of the picture, of its height; see `framing.ts`."""
 
 FAULTY = """() => {
     const shown = (selector) => [...document.querySelectorAll(selector)].filter((e) => e.getClientRects().length > 0);
@@ -25,6 +27,14 @@ FAULTY = """() => {
         return own.left < room.left - 1 || own.right > room.right + 1;
     };
     const cut = shown(labels).filter((e) => e.scrollWidth > e.clientWidth + 1 || leaves(e)).map((e) => `cut: ${words(e)}`);
+    const touches = (e) => {
+        const range = document.createRange();
+        range.selectNodeContents(e);
+        const [text, key] = [range.getBoundingClientRect(), e.closest('button').getBoundingClientRect()];
+        return text.left < key.left + 3 || text.right > key.right - 3;
+    };
+    const keyed = shown('.activity .what, .pupil .what, dialog[open] li button span').filter(touches);
+    cut.push(...keyed.map((e) => `touches its border: ${words(e)}`));
     const over = shown('.title, .back, .message, .picture .legend li, .tools button');
     const lies = (a, b) => a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1;
     const pairs = over.flatMap((a, index) => over.slice(index + 1).map((b) => [a, b]));
@@ -32,6 +42,30 @@ FAULTY = """() => {
     return [...cut, ...hidden.map(([a, b]) => `one over the other: ${words(a)}, ${words(b)}`)];
 }"""
 """Main labels that do not fit into their places, and those that lie over one another."""
+
+
+CODES = """code => {
+    const found = [];
+    const texts = document.createTreeWalker(document.querySelector('main'), NodeFilter.SHOW_TEXT);
+    while (texts.nextNode()) {
+        const [text, range] = [texts.currentNode, document.createRange()];
+        const key = text.parentElement.closest('button, .title');
+        const from = text.data.indexOf(code);
+        if (from < 0 || key === null || text.parentElement.closest('.hidden')) continue;
+        range.setStart(text, from);
+        range.setEnd(text, from + code.length);
+        if (range.getClientRects().length === 0) continue;
+        const [own, room] = [range.getBoundingClientRect(), key.getBoundingClientRect()];
+        const whole = own.left > room.left && own.right < room.right && own.top > room.top && own.bottom < room.bottom;
+        const lines = new Set([...range.getClientRects()].map(({ top }) => Math.round(top))).size;
+        found.push({ place: key.className, lines, whole });
+    }
+    const label = document.querySelector('.pupil small');
+    const next = document.querySelector('.pupil .next').getBoundingClientRect();
+    const covered = label.getBoundingClientRect().right > next.left || label.scrollWidth > label.clientWidth;
+    return { found, covered };
+}"""
+"""Where a code stands on the page, and how well it can be read there."""
 
 
 SPEAK = """code => {
@@ -82,6 +116,61 @@ def test_no_label_is_cut_or_covered_in_any_language(tablets: Tablets, room: Room
     held[0].continue_()
     shown.wait_until("d.stage === 'replay'")
     assert faulty(page) == {}
+
+
+@pytest.mark.parametrize("code", ["7B-12", "WW-10000"])
+@pytest.mark.parametrize(("width", "height"), [*SCREENS, (844, 390)])
+def test_no_code_is_broken_or_cut_in_any_language(tablets: Tablets, room: Room, width: int, height: int, code: str) -> None:
+    page = tablets(width, height, REPLAY_PICTURE_MS, has_touch=True, is_mobile=width < 900)
+    shown = open_live(page, room)
+    page.locator(".pupil .who").click()
+    page.get_by_role("dialog").get_by_role("textbox").fill(code)
+    page.keyboard.press("Enter")
+    expect(page.locator(".pupil")).to_have_attribute("data-pupil", code)
+    expect(page.locator(".pupil")).to_have_attribute("data-wish", "settled")
+    see(shown, room, tried(SHOT, FAULT))
+    for language in LANGUAGES:
+        speak(page, language)
+        read = page.evaluate(CODES, code)
+        assert len(read["found"]) >= 3, "who is up, on the list, and beside the score"
+        assert [one for one in read["found"] if one["lines"] != 1 or not one["whole"]] == [], language
+        assert not read["covered"], language
+        assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth"), language
+
+
+def test_codes_in_the_sentence_that_says_what_a_code_is_are_not_broken(tablets: Tablets, room: Room) -> None:
+    page = tablets(390, 844, has_touch=True, is_mobile=True)
+    open_live(page, room)
+    page.locator(".pupil .who").click()
+    page.get_by_role("dialog").get_by_role("textbox").fill("Anna")
+    page.keyboard.press("Enter")
+    for language in LANGUAGES:
+        speak(page, language)
+        expect(page.get_by_role("alert")).to_contain_text("7B\N{NON-BREAKING HYPHEN}12")
+
+
+def test_what_nobody_has_chosen_takes_two_lines_on_a_phone(tablets: Tablets, room: Room) -> None:
+    page = tablets(390, 844, has_touch=True, is_mobile=True)
+    open_live(page, room)
+    expect(page.locator(".activity")).to_have_attribute("data-preset", "true")
+    for language in LANGUAGES:
+        speak(page, language)
+        assert page.locator(".activity .what").evaluate("what => what.offsetHeight") < 50, language
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 800), (1024, 768)])
+def test_a_warning_lies_beside_the_figure_and_not_over_its_head(tablets: Tablets, room: Room, width: int, height: int) -> None:
+    with_scene(room, fresh_hz=6.0)
+    page = tablets(width, height)
+    open_live(page, room)
+    expect(page.locator(".message")).to_be_visible()
+    for language in LANGUAGES:
+        speak(page, language)
+        message, canvas = page.locator(".message").bounding_box(), page.locator("canvas").bounding_box()
+        assert message is not None
+        assert canvas is not None
+        arm = ARM * canvas["height"]
+        assert message["x"] + message["width"] < canvas["x"] + canvas["width"] / 2 - arm, language
 
 
 @pytest.mark.parametrize(("width", "height"), SCREENS)

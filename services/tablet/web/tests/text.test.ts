@@ -3,7 +3,7 @@ import { describe, expect, it } from 'vitest';
 import { de } from '../src/text/de';
 import { en } from '../src/text/en';
 import { es } from '../src/text/es';
-import { wholeUnit } from '../src/text/format';
+import { unbroken, wholeUnit } from '../src/text/format';
 import { spoken } from '../src/text/words.svelte';
 import { zh } from '../src/text/zh';
 
@@ -38,9 +38,18 @@ describe.each(Object.entries({ de, es, zh }))('the page in %s', (_code, words) =
     expect(words.attempts.show(3, 'X', '82', 'B12')).toMatch(/3.*X.*B12.*82/);
     expect(words.attempts.show(3, 'X', null, null)).not.toContain('null');
     for (const say of [words.pupil.is, words.pupil.nextIs, words.pupil.change]) expect(say('B12')).toContain('B12');
+    expect(words.feedback.onlyNow('X')).toContain('X');
     expect(words.pupil.correct(4)).toContain('4');
     expect(words.overdue('B12')).toContain('B12');
     expect(words.replay.keyframes).toHaveLength(4);
+  });
+});
+
+describe('a sentence with codes', () => {
+  it('breaks none of them', () => {
+    expect(unbroken('Not a code: AB-12 or 7B-12; a well-known one.')).toBe(
+      'Not a code: AB\u201112 or 7B\u201112; a well-known one.',
+    );
   });
 });
 
