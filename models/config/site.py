@@ -42,7 +42,9 @@ class CameraConfig(Section, frozen=True):
         Literal["video", "simulated"],
         Meta(description="video: a file played in real time; simulated: a camera of a lesson that `kinebox simulate` rendered"),
     ]
-    path: Annotated[str, Meta(min_length=1, description="the file, or the lesson's folder, relative to the data folder")]
+    path: Annotated[
+        str, Meta(min_length=1, description="the file, or the lesson's folder, from the root or relative to the data folder")
+    ]
     rate_hz: Annotated[
         float, Meta(gt=0, le=240, description="frames a second of a file; every frame is shown. A lesson has its own")
     ] = 30.0

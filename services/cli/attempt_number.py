@@ -8,7 +8,7 @@ from services.lesson.lesson_header import LessonHeader
 from services.lesson.stretches import LessonAttempt, Stretch
 
 
-def require_attempt(numbers: Sequence[int], number: int, file: Path, without: str) -> None:
+def require_attempt(numbers: Sequence[int], number: int, file: Path, without: str, *, again: bool) -> None:
     """Raise UserError unless there is an attempt of this number.
 
     Args:
@@ -16,11 +16,13 @@ def require_attempt(numbers: Sequence[int], number: int, file: Path, without: st
         number: of the attempt.
         file: of the lesson.
         without: what to do if no attempt was found in it.
+        again: whether they are those that evaluation finds now, which may be more or fewer than on the day.
     """
     if not numbers:
         raise UserError(f"lesson {file} holds no attempts that were found; {without}")
     if number not in numbers:
-        raise UserError(f"lesson {file} has no attempt {number}; it has {ranges(numbers)}")
+        otherwise = "without --again, those of the day count" if again else "with --again, those that are found anew count"
+        raise UserError(f"lesson {file} has no attempt {number}; it has {ranges(numbers)} ({otherwise})")
 
 
 def attempt_in(found: Sequence[Stretch], number: int, file: Path, remedy: str) -> tuple[Stretch, LessonAttempt]:

@@ -11,6 +11,8 @@ from models.config.site import schema
 _OPENING = """\
 # The site file
 
+In what follows, `kinebox` is `.venv/bin/kinebox` of the folder in which `make run` was typed.
+
 One TOML file says what a box has and how it shall work. Unknown keys and values out of bounds are refused, in one line that names
 the key. `kinebox config check FILE` checks a file and the calibration that it names, `kinebox config show FILE` prints it, as
 TOML, with every value that it leaves to its default. An example is `deploy/sites/simulated/site.toml`.

@@ -6,6 +6,7 @@ from pathlib import Path
 from services.doctor.apart import import_finding, import_problems
 from services.doctor.finding import Examined
 from services.doctor.report import as_json, as_text
+from services.support.called import as_called
 
 FINDINGS_CODE = 1
 _NEEDED = ("msgspec", "numpy", "packaging", "psutil")
@@ -19,7 +20,7 @@ def doctor(site: Path | None, data: Path, as_program: bool) -> int:
         examined = Examined(tuple(import_finding(name, problem) for name, problem in problems.items()))
     else:
         examined = _examine(site, data)
-    sys.stdout.write(as_json(examined) if as_program else as_text(examined))
+    sys.stdout.write(as_json(examined) if as_program else as_called(as_text(examined)))
     return FINDINGS_CODE if examined.findings else 0
 
 

@@ -94,7 +94,7 @@ def _stretches(lesson: Lesson, data: Path, site: Path | None, progress: Progress
     if order.again or (order.attempt is not None and not feedbacks):
         feedbacks = attempts_of(lesson, data, site, progress, again=order.again).feedbacks
     if order.attempt is not None:
-        require_attempt(range(1, len(feedbacks) + 1), order.attempt, lesson.path, "leave out --attempt")
+        require_attempt(range(1, len(feedbacks) + 1), order.attempt, lesson.path, "leave out --attempt", again=order.again)
     found = stretches(lesson.parts(), frame_s, feedbacks, watch, only=order.attempt)
     if not found and order.attempt is None:
         raise UserError(f"lesson {lesson.path} holds no motion: it ended too early; export a longer one")

@@ -17,6 +17,7 @@ from services.lesson.local_time import local_time
 from services.lesson.readable_names import readable
 from services.logs.printable import printable
 from services.site_file.reading import read_site
+from services.support.called import as_called
 
 _PIPE_WIDTH = 200
 
@@ -40,7 +41,7 @@ def listed(folder: Path, *, json: bool) -> None:
         typer.echo(msgspec.json.format(msgspec.json.encode([_entry(folder, row) for row in rows])).decode())
         return
     if not rows:
-        typer.echo(f"no lesson in {printable(str(folder))}; 'kinebox record' records one")
+        typer.echo(as_called(f"no lesson in {printable(str(folder))}; 'kinebox record' records one"))
         return
     table = Table(box=None, header_style="bold", pad_edge=False)
     table.add_column("lesson", no_wrap=True)  # it is copied from here
@@ -61,7 +62,7 @@ def listed(folder: Path, *, json: bool) -> None:
     Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else _PIPE_WIDTH).print(table)
     for row in rows:
         if row.problem:
-            typer.echo(printable(f"{row.lesson}: {row.problem}"), err=True)
+            typer.echo(as_called(printable(f"{row.lesson}: {row.problem}")), err=True)
 
 
 def find(lesson: str, folder: Path) -> Path:

@@ -28,11 +28,13 @@ from services.lesson.replay import configuration
 from services.lesson.stretches import stretches
 from services.logs.printable import printable
 from services.site_file.reading import read_file
+from services.support.called import called
 from services.support.own_standards import OwnStandards
 from services.support.teaching_files import STANDARD_SUFFIX, folder_of_own
 
 LEAST_RATE_HZ: Final = 20.0
 """A hit is over within two frames of this."""
+_ANOTHER: Final = "choose another attempt ('kinebox report' shows them all), or have it done once more, in sight of all cameras"
 
 
 @dataclass(frozen=True)
@@ -104,7 +106,9 @@ def record(file: Path, data: Path, site: Path | None, order: Record) -> None:
     with open_lesson(file) as lesson, ProgressLine() as progress:
         lesson.require_entries()
         attempts = attempts_of(lesson, data, site, progress, again=order.again)
-        require_attempt(range(1, len(attempts.feedbacks) + 1), number, file, "name a lesson with an attempt in it")
+        require_attempt(
+            range(1, len(attempts.feedbacks) + 1), number, file, "name a lesson with an attempt in it", again=order.again
+        )
         frame_s, around_s = configuration(lesson.header.preset).frame_s, AROUND_S + FRAME_S
         found = stretches(lesson.parts(), frame_s, attempts.feedbacks, only=number, around_s=around_s)
         header = lesson.header
@@ -119,7 +123,7 @@ def record(file: Path, data: Path, site: Path | None, order: Record) -> None:
     origin = f"attempt {number}, lesson {header.begun:%Y-%m-%d}, {header.wall(each.found.moments_s[0]):%H:%M:%S}"
     whose = f", pupil {each.pupil}" if each.pupil else ""
     shown = f"attempt {number} of lesson {file.name.removesuffix(SUFFIX)} ({when}{whose})"
-    performance = _Performance(track, attempt, origin, name, shown, "choose another attempt")
+    performance = _Performance(track, attempt, origin, name, shown, _ANOTHER)
     _keep(own, performance, _options(own, data, site))
     if attempt is each.found:
         _say_what_was_corrected(attempts, number)
@@ -195,7 +199,7 @@ def _count(own: OwnStandards, made: Standard, source: str, options: str, mirrore
         f"{kept.action}: version {kept.version} counts now, made of {source}",
         f"it takes {seconds:.1f} s, performed by somebody {kept.stature_m:.2f} m tall{mirrored}",
         f"{own.file(kept.action)}: {AT_NEXT_START}",
-        f"bring back what counted before ({counting.origin}): kinebox standard restore {kept.action} {before} {options}",
+        f"bring back what counted before ({counting.origin}): {called()} standard restore {kept.action} {before} {options}",
     )
     for line in lines:
         typer.echo(printable(line))

@@ -18,9 +18,9 @@ def simulate(
     plan: Annotated[
         str | None, typer.Argument(metavar="PLAN", help="A lesson plan: its file, or the name of one that --list lists.")
     ] = None,
-    data: Annotated[Path, typer.Option("--data", help="The data folder, in which lessons are kept.", file_okay=False)] = Path(
-        "build"
-    ),
+    data: Annotated[
+        Path, typer.Option("--data", help="The data folder, in which the lesson's films are put.", file_okay=False)
+    ] = Path("build"),
     out: Annotated[
         Path | None, typer.Option("--out", help="Where the lesson shall be, instead of the data folder.", file_okay=False)
     ] = None,
@@ -46,6 +46,7 @@ def simulate(
         return
     from services.cli.duration import clock  # noqa: PLC0415
     from services.cli.progress import ProgressLine  # noqa: PLC0415
+    from services.support.called import called  # noqa: PLC0415
 
     with ProgressLine() as line:
 
@@ -55,4 +56,4 @@ def simulate(
 
         lesson = simulation.simulate(plan, data, out, progress)
     typer.echo(f"{'was rendered before' if lesson.was_there else 'rendered'}: {lesson.folder}")
-    typer.echo(f"play it: kinebox run --site {shlex.quote(str(lesson.site))} --data {shlex.quote(str(data))}")
+    typer.echo(f"play it: {called()} run --site {shlex.quote(str(lesson.site))} --data {shlex.quote(str(data))}")

@@ -17,6 +17,7 @@ from services.cli.lessons import require_data
 from services.lesson.readable_names import readable
 from services.logs.printable import printable
 from services.site_file.reading import read_site
+from services.support.called import as_called
 from services.support.own_standards import OwnStandards
 from services.support.teaching_files import folder_of_own, own_folder
 
@@ -89,7 +90,7 @@ def listed(data: Path, site: Path | None, *, json: bool) -> None:
     typer.echo("\n".join(line.rstrip() for line in drawn.get().splitlines()))
     for row in rows:
         if row.problem:
-            typer.echo(printable(row.problem), err=True)
+            typer.echo(as_called(printable(row.problem)), err=True)
 
 
 def restore(action: str, version: str | None, data: Path, site: Path | None) -> None:

@@ -9,6 +9,7 @@ from typing import NoReturn
 
 from models.errors import USER_ERROR_CODE, USER_ERROR_PREFIX, UserError
 from services.logs.printable import printable
+from services.support.called import as_called
 
 _SHOWN = 40
 """Characters of a name by which people know it again."""
@@ -33,5 +34,5 @@ def told_in_one_line() -> Iterator[None]:
 
 def exit_with_line(error: UserError) -> NoReturn:
     """One line on stderr, exit code `USER_ERROR_CODE`, no traceback."""
-    sys.stderr.write(f"{USER_ERROR_PREFIX}{printable(' '.join(str(error).split()))}\n")
+    sys.stderr.write(f"{USER_ERROR_PREFIX}{as_called(printable(' '.join(str(error).split())))}\n")
     sys.exit(USER_ERROR_CODE)

@@ -129,10 +129,10 @@ def _require_seen(joints_m: Float, moments_s: Moments, handed: Handed) -> None:
         share = known[first : last + 1].mean(axis=0)
         names = [_own_name(joint, handed) for joint in _LIMBS if share[joint] < LEAST_SEEN]
         if names:
-            told = ", ".join(names) if len(names) < len(_LIMBS) else "the whole body"
-            hidden.append(f"{told} from {begins} to {ends}")
+            told = " and ".join(names) if len(names) < len(_LIMBS) else "whole body"
+            hidden.append(f"the {told} from {begins} to {ends}")
     if hidden:
-        raise PerformanceError(f"was not seen well enough: unknown are {'; '.join(hidden)}")
+        raise PerformanceError(f"was not seen well enough: too little of {'; of '.join(hidden)}")
 
 
 def _own_name(joint: int, handed: Handed) -> str:

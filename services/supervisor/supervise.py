@@ -27,6 +27,7 @@ from services.supervisor.post import Post, describe_exit
 from services.supervisor.preflight import check_everything
 from services.supervisor.silence import Silence
 from services.supervisor.spares import KEPT_FOR, Spares
+from services.support.called import called
 from services.support.environment import process_environment
 from services.support.machine import MachineMeter
 from services.support.signals import stop_on_signals
@@ -55,7 +56,7 @@ def supervise(site_file: Path, data: Path, checks: Iterable[Check], playback: Pl
     stop = stop_on_signals()
     site, rig = check_everything(site_file, data, checks)
     replay = playback is not None
-    command = "kinebox logs --replay" if replay else "kinebox logs"
+    command = f"{called()} logs{' --replay' if replay else ''}"
     journal = Journal(log_folder(data, replay=replay), config=site.logs, command=command)
     journal.note(STARTED, site=str(site_file.resolve()), version=kinebox_version())
     try:

@@ -372,4 +372,6 @@ def test_as_people_type_it(tmp_path: Path) -> None:
     assert b'"pupil":"P07"' in (tmp_path / "out/lesson-attempt1.glb").read_bytes()
     missing = kinebox("lesson", "--format", "glb", "--attempt", "9")
     assert missing.returncode == 2
-    assert missing.stderr == f"kinebox: lesson {file} has no attempt 9; it has 1-2\n"
+    assert (
+        missing.stderr == f"kinebox: lesson {file} has no attempt 9; it has 1-2 (with --again, those that are found anew count)\n"
+    )

@@ -78,7 +78,7 @@ def test_files_that_hold_no_standard_are_refused_with_what_to_do(tmp_path: Path)
     assert "does not stand on the floor at height 0" in told
     unseen = file_of(tmp_path, "c3d", hidden(track, ("left_ankle",), *true.moments_s[1:3]), "unseen")
     told = import_refused(tmp_path, unseen, Import("squat"))
-    assert told.endswith("unknown are left ankle from exertion to peak; correct the file, or take another performance")
+    assert told.endswith("too little of the left ankle from exertion to peak; correct the file, or take another performance")
     assert "--unit is for BVH files" in import_refused(tmp_path, file, Import("squat", unit="cm"))
     bones = file_of(tmp_path, "bvh", track)
     assert "correct --unit" in import_refused(tmp_path, bones, Import("squat", unit="mm"))

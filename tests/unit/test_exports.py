@@ -6,6 +6,7 @@ import struct
 import numpy as np
 import pytest
 
+from models.errors import UserError
 from models.messages.motion import JointState
 from models.motions.rotations import about
 from models.skeleton import coco
@@ -15,7 +16,7 @@ from services.lesson.export import beside, c3d, glb, mot, trc
 from services.lesson.export.armature import armature
 from services.lesson.export.axes import FIGURES, OPENSIM, OURS
 from services.lesson.export.formats import files_of
-from services.lesson.export.kinds import Format
+from services.lesson.export.kinds import Format, format_of
 from services.lesson.export.take import Take, TakeError
 from services.lesson.export.zxy import zxy_deg
 from tests.takes import FRAME_S, STANDING_M, moving, performed
@@ -313,3 +314,8 @@ def test_without_hips_there_are_no_bones_and_trc_and_c3d_are_written_all_the_sam
         files_of(take, kind)
     assert files_of(take, Format.TRC)
     assert files_of(take, Format.C3D)
+
+
+def test_a_format_that_there_is_not_is_refused_with_those_that_there_are() -> None:
+    with pytest.raises(UserError, match=r"^there is no format 'pdf'; choose one of trc, c3d, bvh, glb, mot$"):
+        format_of("pdf")

@@ -13,6 +13,8 @@ from services.evaluation.report.document import VERSION, Report
 _OPENING: Final = """\
 # Reports
 
+In what follows, `kinebox` is `.venv/bin/kinebox` of the folder in which `make run` was typed.
+
     kinebox report LESSON --out report.html                       # the page to print
     kinebox report LESSON --format csv --out 7b.csv               # for the gradebook
     kinebox report LESSON --format json                           # for programs; without --out it goes to stdout

@@ -2,6 +2,8 @@
 
 from enum import StrEnum
 
+from models.errors import UserError
+
 
 class Format(StrEnum):
     """What a motion can be exported as."""
@@ -11,3 +13,11 @@ class Format(StrEnum):
     BVH = "bvh"
     GLB = "glb"
     MOT = "mot"
+
+
+def format_of(name: str) -> Format:
+    """The format of that name; UserError if there is none."""
+    try:
+        return Format(name)
+    except ValueError as error:
+        raise UserError(f"there is no format '{name}'; choose one of {', '.join(Format)}") from error
