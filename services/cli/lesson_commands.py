@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from models.errors import UserError
-from services.lesson.export.kinds import Format
+from services.lesson.export.kinds import Format, format_of
 
 SiteFile = Annotated[Path, typer.Option("--site", help="The site file of the box that runs.", dir_okay=False)]
 LessonSite = Annotated[
@@ -52,7 +52,7 @@ def record(
     if stop:
         recording.end(box, data)
     elif detach:
-        recording.begin(box, title)
+        recording.begin(box, data, title)
     else:
         recording.record(box, data, title, seconds)
 
@@ -88,7 +88,9 @@ def replay(
 
 def export(
     lesson: Annotated[str, typer.Argument(help="A lesson's name, as 'kinebox lessons' lists it, or a file.")],
-    kind: Annotated[Format, typer.Option("--format", help="What the other program reads.", show_default=False)],
+    kind: Annotated[
+        str, typer.Option("--format", help="What the other program reads.", metavar="|".join(Format), show_default=False)
+    ],
     out: Annotated[Path, typer.Option(help="The folder to write into.", file_okay=False)] = Path(),
     attempt: Annotated[int | None, typer.Option(min=1, help="Only the lesson's attempt of this number.", metavar="N")] = None,
     pupil: Annotated[
@@ -111,7 +113,8 @@ def export(
     from services.cli.export import Order  # noqa: PLC0415
     from services.cli.export import export as write  # noqa: PLC0415
 
-    write(lessons.find(lesson, lessons.folder_of(data, site)), data, site, Order(kind, out, attempt, pupil, again))
+    order = Order(format_of(kind), out, attempt, pupil, again)
+    write(lessons.find(lesson, lessons.folder_of(data, site)), data, site, order)
 
 
 def report(

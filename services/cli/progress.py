@@ -29,6 +29,12 @@ class ProgressLine:
             self._stream.write(_CLEAR)
             self._stream.flush()
 
+    def tell(self, line: str) -> None:
+        """A line that stays, also where nobody watches."""
+        self._stream.write(f"{_CLEAR if self._shown else ''}{line}\n")
+        self._stream.flush()
+        self._shown = False
+
     def show(self, line: str) -> None:
         """Put `line` in the place of the one before."""
         now_s = time.monotonic()

@@ -9,16 +9,23 @@ import typer
 from models.config.site import Site
 from models.errors import UserError
 from models.messages.health import Health, RecorderHealth
+from services.bus.join import accepts
 from services.cli.duration import clock
 from services.cli.progress import ProgressLine
+from services.cli.recorded_site import note_of_another
+from services.lesson.index import LessonIndex, LessonRow
 from services.lesson.layout import SUFFIX
 from services.lesson.remote import Remote, join, refused, require_title
+from services.support.called import as_called
 from services.support.signals import stop_on_signals
 
 _ROUND_S = 0.25
 _SILENT_S = 5.0
 GONE_AFTER_S = 180.0
 """Whoever restarts the recorder finds out within two minutes that it hangs as it starts, and waits for up to half a one."""
+BOX_GONE_AFTER_S = 30.0
+"""A box whose router died has another one long before."""
+_WAITED_FOR = f"nothing is heard of the box at {{endpoint}}; it is waited for, {BOX_GONE_AFTER_S:g} s in all"
 
 
 def record(site: Site, data: Path, title: str, seconds: float | None) -> None:
@@ -41,7 +48,11 @@ def record(site: Site, data: Path, title: str, seconds: float | None) -> None:
         remote = Remote(bus)
         lesson = remote.start(title).lesson
         typer.echo(f"recording {lesson}; Ctrl-C ends it" if seconds is None else f"recording {lesson} for {clock(seconds)}")
-        last = _watch(remote, lesson, seconds, stop)
+        note_of_another(site, lesson, data)
+        try:
+            last = _watch(remote, lesson, seconds, stop, site.bus.endpoint)
+        except _BoxGoneError as error:
+            raise UserError(f"{error}. {_left(lesson, site, data)}") from error
         if last is None:
             last = remote.stop()
         typer.echo(_recorded(lesson, last, site, data))
@@ -49,14 +60,16 @@ def record(site: Site, data: Path, title: str, seconds: float | None) -> None:
         bus.close()
 
 
-def begin(site: Site, title: str) -> None:
+def begin(site: Site, data: Path, title: str) -> None:
     """Begin a lesson and leave it; UserError as for `record`."""
     require_title(title)
     bus = join(site.bus.endpoint)
     try:
-        typer.echo(f"recording {Remote(bus).start(title).lesson}; 'kinebox record --stop' ends it")
+        lesson = Remote(bus).start(title).lesson
+        typer.echo(as_called(f"recording {lesson}; 'kinebox record --stop' ends it"))
     finally:
         bus.close()
+    note_of_another(site, lesson, data)
 
 
 def end(site: Site, data: Path) -> None:
@@ -68,17 +81,24 @@ def end(site: Site, data: Path) -> None:
         bus.close()
     if last is None:
         raise UserError("no lesson is being recorded; 'kinebox record' begins one")
+    note_of_another(site, last.lesson, data)
     typer.echo(_recorded(last.lesson, last, site, data))
 
 
-def _watch(remote: Remote, lesson: str, seconds: float | None, stop: Event) -> RecorderHealth | None:
+class _BoxGoneError(Exception):
+    """Nobody is at the endpoint any more."""
+
+
+def _watch(remote: Remote, lesson: str, seconds: float | None, stop: Event, endpoint: str) -> RecorderHealth | None:
     """Show how the lesson goes. None if it shall be ended now; its last known state if it was ended by others.
 
     Raises:
+        _BoxGoneError: the box ended, and did not come back; or it shall be ended, and no box is there that could.
         UserError: the lesson ended by itself, or nobody is left to record it. A recorder that is tried again is waited for.
     """
     last: RecorderHealth | None = None
     heard_s = time.monotonic()
+    is_waited_for = False
     with ProgressLine() as progress:
         while not stop.is_set():
             health = remote.listen(_ROUND_S)
@@ -94,6 +114,12 @@ def _watch(remote: Remote, lesson: str, seconds: float | None, stop: Event) -> R
                 last = health.recorder
             if last is not None and seconds is not None and last.recorded_s >= seconds:
                 return None
+            box_silent_s = now_s - remote.heard_s
+            if is_waited_for != (box_silent_s > _SILENT_S):
+                is_waited_for = not is_waited_for
+                progress.tell(_WAITED_FOR.format(endpoint=endpoint) if is_waited_for else "the box is heard again")
+            if box_silent_s > BOX_GONE_AFTER_S and not accepts(endpoint):
+                raise _BoxGoneError(f"the box at {endpoint} is gone: nothing was heard of it for {BOX_GONE_AFTER_S:g} s")
             reason = remote.newest.reason if remote.newest is not None else ""
             if now_s - heard_s > GONE_AFTER_S:
                 words = f"nothing was heard of the recorder for {GONE_AFTER_S:g} s; 'kinebox doctor' says what is wrong"
@@ -101,6 +127,9 @@ def _watch(remote: Remote, lesson: str, seconds: float | None, stop: Event) -> R
             if now_s - heard_s > _SILENT_S:
                 reason = "nothing is heard of the recorder"
             progress.show(_line(last, reason))
+    if not accepts(endpoint):  # A wish would be heard by nobody, and waited for in vain.
+        words = "so that nobody was told to end the lesson; if it comes back by itself, 'kinebox record --stop' ends it"
+        raise _BoxGoneError(f"no box is at {endpoint} any more, {words}")
     return None
 
 
@@ -114,6 +143,12 @@ def _kept(lesson: str) -> str:
     return f"What lesson {lesson} has is kept, and finished when the box is started again with 'kinebox run'"
 
 
+def _left(lesson: str, site: Site, data: Path) -> str:
+    """What there is of the lesson of a box that is gone: one that was told to end has finished it."""
+    file = _file(lesson, site, data)
+    return f"The lesson is in {file}" if file.is_file() else _kept(lesson)
+
+
 def _line(recorder: RecorderHealth | None, reason: str) -> str:
     if recorder is None:
         return f"waiting for the first second{f'; {reason}' if reason else ''}"
@@ -122,10 +157,19 @@ def _line(recorder: RecorderHealth | None, reason: str) -> str:
 
 
 def _recorded(lesson: str, last: RecorderHealth | None, site: Site, data: Path) -> str:
-    """What became of a lesson, and where it is."""
-    length = f", {clock(last.recorded_s)}" if last is not None else ""
-    gaps = f", {_gaps(last.gaps)}" if last is not None and last.gaps else ""
-    return f"recorded {(data / site.lessons.folder / (lesson + SUFFIX)).resolve()}{length}{gaps}"
+    """What became of a lesson, and where it is. Its length is the list's: its last half second came after the last word."""
+    file = _file(lesson, site, data)
+    row = next((row for row in LessonIndex(file.parent).lessons() if row.lesson == lesson), None) if file.is_file() else None
+    whole = row or last
+    if whole is None:
+        return f"recorded {file}"
+    seconds = whole.seconds if isinstance(whole, LessonRow) else whole.recorded_s
+    gaps = f", {_gaps(whole.gaps)}" if whole.gaps else ""
+    return f"recorded {file}, {clock(seconds)}{gaps}"
+
+
+def _file(lesson: str, site: Site, data: Path) -> Path:
+    return (data / site.lessons.folder / (lesson + SUFFIX)).resolve()
 
 
 def _gaps(count: int) -> str:

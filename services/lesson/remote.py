@@ -37,6 +37,8 @@ class Remote:
         self._someone = False
         self.newest: Health | None = None
         """What the recorder said last."""
+        self.heard_s = time.monotonic()
+        """When any part of the box was heard last."""
 
     def start(self, title: str) -> RecorderHealth:
         """Begin a lesson; its state once it has begun.
@@ -74,6 +76,7 @@ class Remote:
             except codec.CodecError:
                 continue
             self._someone = True
+            self.heard_s = time.monotonic()
             if health.process == RECORDER:
                 self.newest = health
                 return health

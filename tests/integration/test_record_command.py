@@ -14,8 +14,10 @@ from pathlib import Path
 import pytest
 
 from models.config.site import LessonsConfig
+from services.cli.duration import clock
 from services.lesson.layout import PART_SUFFIX
 from services.lesson.lesson_file import LessonWriter
+from tests.integration.fusion_room import SITE
 from tests.integration.test_recorder_process import ROOT, Box
 from tests.integration.waiting import until
 from tests.synthetic.gym import Gym
@@ -86,6 +88,43 @@ def test_a_signal_ends_the_lesson_and_says_where_it_is(tmp_path: Path, number: s
         assert (process.returncode, errors) == (0, "")
         (file,) = box.lessons.glob("*.mcap")
         assert f"recorded {file}, 0:0" in out
+
+
+def test_a_signal_ends_who_stays_with_a_lesson_whose_box_has_ended(tmp_path: Path) -> None:
+    box = Box(tmp_path, LessonsConfig())
+    words = [*COMMAND, "record", "--site", str(box.site), "--data", str(box.data), "--for", "5m"]
+    with box.running(), box.recorder() as recorder:
+        process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT)
+        box.wait_recorded(recorder.pid, parts=2)
+        recorder.terminate()  # as the box ends it
+        recorder.wait()
+    with process:
+        process.send_signal(signal.SIGTERM)
+        _, errors = process.communicate(timeout=60)
+    (file,) = box.lessons.glob("*.mcap")
+    assert process.returncode == 2
+    assert f"no box is at {box.room.endpoint} any more" in errors
+    assert f"The lesson is in {file}" in errors
+
+
+def test_a_box_that_runs_another_site_is_named_and_so_is_the_one_that_was_meant(tmp_path: Path) -> None:
+    with Box(tmp_path, LessonsConfig()).running() as box, box.recorder():
+        meant = tmp_path / "meant.toml"
+        meant.write_text(box.site.read_text().replace(f'name = "{SITE.name}"', 'name = "Sports hall"', 1))
+        done = kinebox("record", "--site", str(meant), "--data", str(box.data), "--for", "1s")
+        assert done.returncode == 0, done.stderr
+        assert f"runs the site '{SITE.name}', and not 'Sports hall', which --site names" in done.stderr
+        begun = kinebox("record", "--site", str(meant), "--data", str(tmp_path), "--detach")
+        assert f"keeps its lessons elsewhere than in {tmp_path / 'lessons'}" in begun.stderr
+        ended = record(box, "--stop")
+        assert (ended.returncode, ended.stderr) == (0, "")
+
+
+def test_a_lesson_is_as_long_when_it_ends_as_it_is_in_the_list(tmp_path: Path) -> None:
+    with Box(tmp_path, LessonsConfig()).running() as box, box.recorder():
+        done = record(box, "--for", "2s")
+        (listed,) = json.loads(kinebox("lessons", "--data", str(box.data), "--json").stdout)
+    assert done.stdout.splitlines()[-1] == f"recorded {listed['file']}, {clock(listed['seconds'])}"
 
 
 def test_a_lesson_is_begun_and_left_seen_to_run_and_ended_from_elsewhere(tmp_path: Path) -> None:
