@@ -28,6 +28,8 @@ from services.support.requirements import installed_version, required_packages
 from services.support.version import kinebox_version
 
 FORMAT_VERSION = 1
+_FIRST_TIME = (1980, 1, 1, 0, 0, 0)
+"""That a zip knows."""
 
 
 def export(file: Path, lines: Iterable[Line], site_toml: str | None, query: dict[str, Any], now: dt.datetime) -> dict[str, Any]:
@@ -72,7 +74,7 @@ def _pack(
     }
     hashes = {}
     with archive:
-        with archive.open("log.jsonl", "w", force_zip64=True) as stream:
+        with archive.open(_member("log.jsonl", now), "w", force_zip64=True) as stream:
             digest, counts = hashlib.sha256(), _Counts()
             for line in lines:
                 said = _without_secrets(line).encode() + b"\n"
@@ -82,11 +84,19 @@ def _pack(
         manifest["lines"] = counts.told()
         hashes["log.jsonl"] = digest.hexdigest()
         if site_toml is not None:
-            archive.writestr("site.toml", site_toml)
+            archive.writestr(_member("site.toml", now), site_toml)
             hashes["site.toml"] = hashlib.sha256(site_toml.encode()).hexdigest()
         manifest["sha256"] = hashes
-        archive.writestr("manifest.json", msgspec.json.format(msgspec.json.encode(manifest), indent=2))
+        archive.writestr(_member("manifest.json", now), msgspec.json.format(msgspec.json.encode(manifest), indent=2))
     return manifest
+
+
+def _member(name: str, now: dt.datetime) -> zipfile.ZipInfo:
+    """A file of the archive, with the local time of this machine, as all programs show it; a clock that was never set has none."""
+    here = now.astimezone()
+    member = zipfile.ZipInfo(name, max((here.year, here.month, here.day, here.hour, here.minute, here.second), _FIRST_TIME))
+    member.compress_type = zipfile.ZIP_DEFLATED
+    return member
 
 
 def _without_secrets(line: Line) -> str:

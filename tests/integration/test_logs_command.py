@@ -220,6 +220,8 @@ def test_the_log_of_a_box_with_a_crash_can_be_looked_at_and_sent(tmp_path: Path)
     assert str(box.site) in result.stdout
     with zipfile.ZipFile(zipped) as archive:
         assert archive.testzip() is None
+        assert {member.date_time[0] for member in archive.infolist()} == {dt.datetime.now().astimezone().year}
+        assert {member.compress_type for member in archive.infolist()} == {zipfile.ZIP_DEFLATED}
         contents = {name: archive.read(name) for name in archive.namelist()}
     assert sorted(contents) == ["log.jsonl", "manifest.json", "site.toml"]
     manifest = json.loads(contents["manifest.json"])
