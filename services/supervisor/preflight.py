@@ -13,6 +13,8 @@ from models.process import Check
 from services.site_file.reading import read_site
 from services.support.listening import NoAddressError, listen
 
+_LAST_PORT = 65535
+
 
 def check_everything(site_file: Path, data: Path, checks: Iterable[Check]) -> tuple[Site, Rig]:
     """Read the site with its calibration and check what it needs: what the parts say, then the ports.
@@ -70,5 +72,12 @@ class _Port(NamedTuple):
         except OSError as error:
             raise UserError(
                 f"{self.what}: {self.number} on {self.host} cannot be used ({error.strerror}); stop what uses it, "
-                f"perhaps another KineBox, or change {self.key} in the site file"
+                f"perhaps another KineBox, or change {self.key} in the site file ({self._written()})"
             ) from error
+
+    def _written(self) -> str:
+        """How another port is written there."""
+        table, name = self.key.split(".")
+        number = self.number + (1 if self.number < _LAST_PORT else -1)
+        value = f'"tcp/{self.host}:{number}"' if name == "endpoint" else str(number)
+        return f"[{table}], and below it {name} = {value}"

@@ -42,6 +42,18 @@ def test_a_page_whose_address_is_none_is_not_blamed_on_its_port(host: str) -> No
         require_ports(site(host, free_port(), free_port()))
 
 
+def test_a_port_that_is_taken_is_told_with_the_lines_that_name_another_one() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        with pytest.raises(
+            UserError, match=rf"change tablet\.port in the site file \(\[tablet\], and below it port = {port + 1}\)$"
+        ):
+            require_ports(site("127.0.0.1", port, free_port()))
+        endpoint = rf'"tcp/127\.0\.0\.1:{port + 1}"'
+        with pytest.raises(UserError, match=rf"bus\.endpoint in the site file \(\[bus\], and below it endpoint = {endpoint}\)$"):
+            require_ports(site("127.0.0.1", free_port(), port))
+
+
 def test_a_bus_whose_port_somebody_else_has_is_not_blamed_on_the_page() -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
