@@ -39,7 +39,7 @@ help: ## Show this list
 	@grep -hE '^[a-z0-9-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
 
 run: setup ## Start KineBox on the built-in lesson (SOURCE=footage or footage2: films of people) and print the address of the page
-	@exec kinebox run --site $(SITE) --data $(DATA)
+	@exec $(VENV)/bin/kinebox run --site $(SITE) --data $(DATA)
 
 test: ## All tests but the four suites below: unit, property, golden, real sockets and processes, the page in Chromium
 	@$(MAKE) --no-print-directory --silent --jobs=2 $(SETUP) $(FILMS) $(DATA)/tests.ready
@@ -112,12 +112,13 @@ $(FOOTAGES:%=$(DATA)/%/installed.json): $(wildcard edge/footage/*.py) | $(VENV)/
 
 web: $(WEB)/dist/index.html ## Build the tablet's page
 $(WEB)/node_modules/.ready: $(WEB)/package-lock.json | $(VENV)/.ready
-	@echo "Installing the page's packages ..."
-	@cd $(WEB) && npm ci --no-audit --no-fund --loglevel=error
+	@echo "Installing the page's packages (about 10 s) ..."
+	@cd $(WEB) && npm ci --no-audit --no-fund --no-progress --loglevel=error
 	@touch $@
 WEB_SOURCES := $(shell find $(WEB)/src $(WEB)/public -type f) $(addprefix $(WEB)/,index.html package.json svelte.config.js tsconfig.json vite.config.ts)
 $(WEB)/dist/index.html: $(WEB)/node_modules/.ready $(WEB_SOURCES)
-	@cd $(WEB) && npm run --silent build
+	@echo "Building the page (about 5 s) ..."
+	@cd $(WEB) && npm run --silent build -- --logLevel error
 	@touch $@
 
 # A process that may not write beside its modules, or is told not to, would compile them at every start.
@@ -132,9 +133,8 @@ $(DATA)/kernels/.ready: models/compiled.py $(wildcard services/fusion/*.py servi
 	@# Numba looks at the file of each kernel, and not at how all are compiled.
 	@$(if $(filter models/compiled.py,$?),rm -rf $(@D))
 	@mkdir -p $(@D)
-	@echo "Compiling numerical kernels ..."
-	@$(PYTHON) -c "from services.fusion.process import prepare; prepare()"
-	@$(PYTHON) -c "from services.evaluation.process import prepare; prepare()"
+	@echo "Compiling numerical kernels (about 45 s) ..."
+	@$(PYTHON) -m services.cli.compile_kernels
 	@touch $@
 
 test-faults: setup $(FILM_OF_footage) ## The box killed, stopped and starved: every fault drill once, on the real processes
@@ -242,4 +242,4 @@ clean: ## Remove what was built, but not the downloads' results
 	rm -rf $(WEB)/dist $(DATA)/kernels $(DATA)/bytecode.ready $(DATA)/bench .mypy_cache .ruff_cache .pytest_cache
 
 distclean: clean ## Remove everything that was installed or downloaded, too; lessons, logs and what a school taught stay
-	rm -rf $(VENV) $(DATA)/networks $(FOOTAGES:%=$(DATA)/%) $(DATA)/simulated/six_actions build/peers build/lock build/body build/motions $(WEB)/node_modules *.egg-info .hypothesis .import_linter_cache
+	rm -rf $(VENV) $(DATA)/networks $(FOOTAGES:%=$(DATA)/%) $(DATA)/downloads $(DATA)/simulated/six_actions build/peers build/lock build/body build/motions $(WEB)/node_modules *.egg-info .hypothesis .import_linter_cache
