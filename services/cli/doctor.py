@@ -3,6 +3,7 @@
 import sys
 from pathlib import Path
 
+from services.cli.printed import print_for_programs
 from services.doctor.apart import import_finding, import_problems
 from services.doctor.finding import Examined
 from services.doctor.report import as_json, as_text
@@ -20,7 +21,10 @@ def doctor(site: Path | None, data: Path, as_program: bool) -> int:
         examined = Examined(tuple(import_finding(name, problem) for name, problem in problems.items()))
     else:
         examined = _examine(site, data)
-    sys.stdout.write(as_json(examined) if as_program else as_called(as_text(examined)))
+    if as_program:
+        print_for_programs(as_json(examined))
+    else:
+        sys.stdout.write(as_called(as_text(examined)))
     return FINDINGS_CODE if examined.findings else 0
 
 

@@ -11,6 +11,7 @@ from rich.table import Table
 from models.config.site import LessonsConfig
 from models.errors import UserError
 from services.cli.duration import clock
+from services.cli.printed import print_for_programs
 from services.lesson.index import NAME, LessonIndex, LessonRow
 from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.local_time import local_time
@@ -38,7 +39,8 @@ def listed(folder: Path, *, json: bool) -> None:
     """Print the lessons of a folder, the newest first."""
     rows = LessonIndex(folder).lessons() if folder.is_dir() else []
     if json:
-        typer.echo(msgspec.json.format(msgspec.json.encode([_entry(folder, row) for row in rows])).decode())
+        entries = msgspec.json.encode([_entry(folder, row) for row in rows])
+        print_for_programs(f"{msgspec.json.format(entries).decode()}\n")
         return
     if not rows:
         typer.echo(as_called(f"no lesson in {printable(str(folder))}; 'kinebox record' records one"))

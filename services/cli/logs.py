@@ -15,6 +15,7 @@ import tomlkit
 from models.errors import UserError
 from models.process import REPLAY
 from services.cli.duration import parse_duration
+from services.cli.printed import print_for_programs
 from services.logs.export import export
 from services.logs.files import STARTED, log_folder, log_numbers
 from services.logs.past import last_lines, wanted_lines
@@ -118,9 +119,11 @@ def _require_log(folder: Path) -> None:
 
 def _print(lines: Iterable[Line], *, json: bool) -> None:
     colour = sys.stdout.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
+    if json:
+        print_for_programs("".join(f"{as_json(line)}\n" for line in lines))
+        return
     for line in lines:
-        text = as_json(line) if json else readable(line, colour=colour)
-        sys.stdout.write(text + "\n")
+        sys.stdout.write(f"{readable(line, colour=colour)}\n")
     sys.stdout.flush()
 
 

@@ -6,7 +6,9 @@ from pathlib import Path
 from typing import Annotated
 
 from models.errors import UserError
+from services.cli.printed import print_for_programs, printed_whole
 from services.cli.user_error import exit_with_line, told_in_one_line
+from services.cli.utf8 import begin_in_utf8
 
 try:
     import typer
@@ -37,8 +39,9 @@ standard_commands.add_to(app)
 
 def main() -> None:
     """Entry point of `kinebox`: an error for people is one line and exit code 2, any other keeps its traceback."""
+    begin_in_utf8()
     try:
-        with told_in_one_line():
+        with told_in_one_line(), printed_whole():
             app()
     except KeyboardInterrupt:
         sys.exit(130)
@@ -106,7 +109,7 @@ def config_show(file: SiteFileArgument) -> None:
     """Print a site file with all of its defaults, as a site file."""
     from services.cli import config  # noqa: PLC0415
 
-    typer.echo(config.show(file), nl=False)
+    print_for_programs(config.show(file))
 
 
 @config_app.command("migrate")

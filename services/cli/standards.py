@@ -14,6 +14,7 @@ from rich.table import Table
 from models.errors import UserError
 from models.teaching.standard import Standard
 from services.cli.lessons import require_data
+from services.cli.printed import print_for_programs
 from services.lesson.readable_names import readable
 from services.logs.printable import printable
 from services.site_file.reading import read_site
@@ -67,7 +68,7 @@ def listed(data: Path, site: Path | None, *, json: bool) -> None:
     own = own_standards(data, site)
     rows = [row for action in own.actions for row in _rows(own, action)]
     if json:
-        typer.echo(msgspec.json.format(msgspec.json.encode([asdict(row) for row in rows])).decode())
+        print_for_programs(f"{msgspec.json.format(msgspec.json.encode([asdict(row) for row in rows])).decode()}\n")
         return
     table = Table(box=None, header_style="bold", pad_edge=False)
     table.add_column("action", no_wrap=True)

@@ -4,7 +4,7 @@ import errno
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import NoReturn
 
 from models.errors import USER_ERROR_CODE, USER_ERROR_PREFIX, UserError
@@ -33,6 +33,7 @@ def told_in_one_line() -> Iterator[None]:
 
 
 def exit_with_line(error: UserError) -> NoReturn:
-    """One line on stderr, exit code `USER_ERROR_CODE`, no traceback."""
-    sys.stderr.write(f"{USER_ERROR_PREFIX}{as_called(printable(' '.join(str(error).split())))}\n")
+    """One line on stderr, exit code `USER_ERROR_CODE`, no traceback. Where no line can be written, the code tells."""
+    with suppress(OSError, UserError):
+        sys.stderr.write(f"{USER_ERROR_PREFIX}{as_called(printable(' '.join(str(error).split())))}\n")
     sys.exit(USER_ERROR_CODE)
