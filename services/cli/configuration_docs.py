@@ -15,7 +15,8 @@ In what follows, `kinebox` is `.venv/bin/kinebox` of the folder in which `make r
 
 One TOML file says what a box has and how it shall work. Unknown keys and values out of bounds are refused, in one line that names
 the key. `kinebox config check FILE` checks a file and the calibration that it names, `kinebox config show FILE` prints it, as
-TOML, with every value that it leaves to its default. An example is `deploy/sites/simulated/site.toml`.
+TOML, with every value that it leaves to its default. What it names in the data folder is looked at by `kinebox doctor --site FILE`.
+An example is `deploy/sites/simulated/site.toml`.
 
 A file of an older version is refused by `kinebox run`. `kinebox config migrate FILE` brings it to the newest one: comments stay,
 and what it was is kept beside it as `FILE.bak-VERSION-TIME`. `--dry-run` only prints what would become different.

@@ -16,6 +16,7 @@ from services.doctor.configuration import (
 )
 from services.doctor.finding import Examined, Fact, Finding
 from services.doctor.installation import Installation, gather_installation, judge_installation
+from services.doctor.lessons import gather_lessons, judge_lessons
 from services.doctor.machine import gather_machine, judge_machine
 from services.doctor.ports import gather_ports, judge_ports
 from services.doctor.processes import RunningBox, gather_boxes
@@ -52,6 +53,8 @@ def _parts(order: Order) -> Iterator[Examined]:
     yield judge_installation(order.installation(order.data))
     configuration = gather_configuration(order.site)
     yield judge_configuration(configuration)
+    if not configuration.error:  # Else nobody knows where lessons shall be.
+        yield judge_lessons(gather_lessons(configuration.site, order.data))
     yield judge_inspected(gather_inspected(configuration, order.data, order.inspections))
     yield from _running(order, configuration)
 

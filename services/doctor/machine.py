@@ -3,8 +3,6 @@
 import datetime as dt
 import os
 import platform
-import stat
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +11,7 @@ import psutil
 from models.messages.health import MachineHealth
 from models.messages.trouble import Trouble, TroubleCode
 from services.doctor.finding import Examined, Fact, Finding, Level
+from services.doctor.folders import KNOWN_BY, try_folder
 from services.support.machine import MachineMeter, Sensors
 from services.support.machine_troubles import machine_troubles, size_of
 from services.support.processor import processor
@@ -73,7 +72,7 @@ def gather_machine(data: Path, sensors: Sensors) -> MachineFacts:
         memory_mib=psutil.virtual_memory().total / 2**20,
         wall=dt.datetime.fromtimestamp(wall_ns * 1e-9, dt.UTC),
         data=data,
-        data_problem=_try_folder(data),
+        data_problem=try_folder(data),
     )
 
 
@@ -134,23 +133,5 @@ def _clock(machine: MachineFacts) -> Finding | None:
 def _folder(machine: MachineFacts) -> Finding | None:
     if not machine.data_problem:
         return None
-    known_by = "writing a small file there"
     remedy = "correct --data, or the folder's owner and rights, or mend its disk"
-    return Finding("fault", "data folder", f"{machine.data} {machine.data_problem}", known_by, remedy)
-
-
-def _try_folder(data: Path) -> str:
-    """Why the folder cannot be used; empty if it can."""
-    try:
-        if not stat.S_ISDIR(data.stat().st_mode):
-            return "is no folder"
-        list(data.iterdir())
-        with tempfile.TemporaryFile(dir=data) as file:
-            file.write(b"doctor" * 1000)
-            file.flush()
-            os.fsync(file.fileno())
-    except FileNotFoundError:
-        return "does not exist"
-    except OSError as error:
-        return f"cannot be used: {error.strerror}"
-    return ""
+    return Finding("fault", "data folder", f"{machine.data} {machine.data_problem}", KNOWN_BY, remedy)

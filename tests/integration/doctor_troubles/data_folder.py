@@ -28,6 +28,11 @@ def _file_for_folder(house: House) -> None:
     house.data.write_text("")
 
 
+def _lessons_behind_a_file(house: House) -> None:
+    house.site.write_text(f'{house.site.read_text()}[lessons]\nfolder = "disk/lessons"\n')
+    (house.data / "disk").write_text("")
+
+
 @contextmanager
 def file_size_limit(folder: Path) -> Iterator[Examined]:
     house = build_house(folder)
@@ -73,5 +78,27 @@ DATA_FOLDER: dict[str, Trouble] = {
     "the data folder is a file": Trouble(broken(_file_for_folder), "data folder", "is no folder", "correct --data"),
     "nothing can be written to the data folder": Trouble(
         file_size_limit, "data folder", "cannot be used: File too large", "mend its disk"
+    ),
+    "a file lies where lessons go": Trouble(
+        broken(lambda house: (house.data / "lessons").write_text("")),
+        "lessons",
+        r"nothing can be recorded: .*data/lessons is no folder",
+        r"lessons\.folder",
+    ),
+    "a file lies on the way to where the site file has lessons": Trouble(
+        broken(_lessons_behind_a_file), "lessons", r"nothing can be recorded: .*data/disk is no folder", r"lessons\.folder"
+    ),
+    "the folder of lessons is a link that leads nowhere": Trouble(
+        broken(lambda house: (house.data / "lessons").symlink_to(house.data / "unplugged")),
+        "lessons",
+        "nothing can be recorded: .*data/lessons is a link to .*unplugged, which does not exist",
+        "mount its disk",
+    ),
+    "a folder lies where the list of lessons goes": Trouble(
+        broken(lambda house: (house.data / "lessons" / "index.sqlite").mkdir(parents=True)),
+        "lessons",
+        r"the list of lessons cannot be kept: .*lessons/index\.sqlite is no file",
+        "another name",
+        "warning",
     ),
 }
