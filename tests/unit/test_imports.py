@@ -254,6 +254,26 @@ def test_a_c3d_that_is_not_whole_or_foreign_is_refused(data: bytes, told: str) -
     assert str(caught.value).startswith("standard.c3d")
 
 
+@pytest.mark.parametrize(
+    ("kind", "before", "after"),
+    [
+        ("trc", "\n3\t0.066667", "\n3\t1e308"),
+        ("trc", "\n3\t0.066667\t", "\n3\t0.066667\t1e308\t"),
+        ("bvh", "OFFSET 0.0000", "OFFSET 1e308"),
+        ("bvh", "OFFSET 0.0000", "OFFSET -1e308"),
+    ],
+)
+def test_a_number_without_measure_is_refused_without_a_line_of_numpys(tmp_path: Path, kind: str, before: str, after: str) -> None:
+    file = tmp_path / f"coach.{kind}"
+    assert before in TEXTS[kind]
+    file.write_text(TEXTS[kind].replace(before, after))
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        with pytest.raises(UserError, match=r"coach\.(trc|bvh)"):
+            read_motion(file)
+    assert [str(one.message) for one in said] == []
+
+
 def test_files_are_read_by_their_suffix_and_refused_by_their_names(tmp_path: Path) -> None:
     good = tmp_path / "clear.TRC"
     good.write_text(TEXTS["trc"])

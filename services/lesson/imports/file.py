@@ -4,6 +4,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
+import numpy as np
+
 from models.errors import UserError
 from models.regular_file import require_regular
 from services.evaluation.track import Track
@@ -40,4 +42,6 @@ def read_motion(file: Path, unit: str | None = None) -> Track:
         raise UserError(f"{name} does not exist; correct the name") from error
     except OSError as error:
         raise UserError(f"{name} cannot be read: {error.strerror}; correct its path or its permissions") from error
-    return decode(data, name) if unit is None else bvh.decode(data, name, unit)
+    # A number without measure makes a place that is refused as nowhere in a gym; numpy's own lines about it are for nobody.
+    with np.errstate(over="ignore", invalid="ignore"):
+        return decode(data, name) if unit is None else bvh.decode(data, name, unit)
