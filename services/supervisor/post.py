@@ -7,7 +7,7 @@ from models.config.site import SupervisorConfig
 from models.errors import USER_ERROR_CODE
 from models.messages.health import Restarts, State
 from models.messages.trouble import Trouble, TroubleCode
-from models.process import REPLAY, ROUTER
+from models.process import EVALUATION, REPLAY, ROUTER
 from services.supervisor.child import Child, ChildSpec
 from services.supervisor.policy import GiveUp, History, Restart, decide, try_again
 from services.support.signals import signal_name
@@ -104,10 +104,12 @@ class Post:
         """The process ended with a line that says what a person must do.
 
         When the box is started somebody is there to read it, and nothing was there before that could come back. Later on a lesson
-        is running, and what was there may return by itself or by that person's hand.
+        is running, and what was there may return by itself or by that person's hand. What is taught was read before the start: if
+        it cannot be any more, somebody is just at work on it.
         """
         why = f"said: {line}"
-        if self.spec.entry == REPLAY or not self.worked:
+        first = not self.worked and self.ended_s is None and self.spec.entry != EVALUATION
+        if self.spec.entry == REPLAY or first:
             self.ended_s, self.last_end = now_s, why
             self._give_up(line)
         elif self.spec.entry == ROUTER:

@@ -5,7 +5,7 @@ import pytest
 from models.config.site import SupervisorConfig
 from models.errors import USER_ERROR_CODE
 from models.messages.trouble import Trouble, TroubleCode
-from models.process import REPLAY, ROUTER
+from models.process import EVALUATION, REPLAY, ROUTER
 from services.supervisor.child import ChildSpec
 from services.supervisor.policy import LONGEST_WAIT_S
 from services.supervisor.post import SETTLES_WITHIN_S, Post, describe_exit
@@ -98,6 +98,22 @@ def test_what_a_person_must_do_is_final_for_a_process_that_never_worked() -> Non
     assert post.given_up == LINE
     assert post.absence == Trouble("given_up", LINE)
     assert post.trouble == "", "nobody shall read that it is started again"
+
+
+def test_an_evaluation_that_cannot_read_what_is_taught_is_tried_again_though_it_never_worked() -> None:
+    post = Post(ChildSpec(EVALUATION))
+    post.reports("starting", ("getting_ready",), 50.0)
+    assert refused(post, 20)[-1] == LONGEST_WAIT_S
+    assert post.given_up == ""
+    assert post.absence == Trouble("restarting", f"{LINE}; it is tried again")
+
+
+@pytest.mark.parametrize("entry", ["tablet", "recorder"])
+def test_a_process_that_died_before_it_worked_and_cannot_be_started_then_is_tried_again(entry: str) -> None:
+    post = Post(ChildSpec(entry))
+    post.ended(-signal.SIGKILL, "", 60.0, CONFIG)
+    assert refused(post, 20)[-1] == LONGEST_WAIT_S
+    assert post.given_up == ""
 
 
 def test_a_process_that_worked_and_cannot_now_is_tried_again_less_and_less_often_and_never_given_up() -> None:
