@@ -39,6 +39,8 @@ LONGEST_S: Final = 20.0
 BEFORE_S: Final = 0.2
 AFTER_S: Final = 0.15
 """A performance begins so long before its start and ends so long after its end, as far as that is known."""
+LAST_VERSION: Final = 999_999
+"""Nobody counts so far; a file with a larger number was damaged or made up, and would leave none for those after it."""
 _UNKNOWN: Final = -(2**15)
 _FARTHEST_M: Final = UNIT_M * (2**15 - 2)
 _UNKNOWN_SPREAD: Final = 2**16 - 1
@@ -83,7 +85,7 @@ class Standard:
 
     Attributes:
         action: its name.
-        version: counts the standards of this action; from 1.
+        version: counts the standards of this action; from 1 to `LAST_VERSION`.
         origin: in words: a simulated performance, a recorded one and when, an imported file.
         performance: what others are compared with.
         spread_m: (S, 17) how far a joint of a good performance is from there, root of the mean square over good performances of a
@@ -101,8 +103,8 @@ class Standard:
     exemplars: tuple[Exemplar, ...] = ()
 
     def __post_init__(self) -> None:
-        if not self.action or self.version < 1:
-            raise ValueError("a standard has an action, and a version from 1")
+        if not self.action or not 1 <= self.version <= LAST_VERSION:
+            raise ValueError(f"a standard has an action, and a version from 1 to {LAST_VERSION}")
         if not _STATURE_M[0] <= self.stature_m <= _STATURE_M[1]:
             raise ValueError(f"nobody is {self.stature_m:g} m tall")
         if self.spread_m.shape != (len(self.joints_m), coco.COUNT) or (self.spread_m < 0).any() or np.isinf(self.spread_m).any():

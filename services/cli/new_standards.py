@@ -9,14 +9,15 @@ from typing import Final
 import typer
 
 from models.errors import UserError
-from models.teaching.standard import FRAME_S, RATE_HZ, Moments, Standard, decode
+from models.teaching.showing import PerformanceError, decode_own
+from models.teaching.standard import FRAME_S, RATE_HZ, Moments, Standard
 from services.cli.attempt_number import attempt_in, ranges, require_attempt, told
 from services.cli.lesson_attempts import Attempts, attempts_of
 from services.cli.lessons import require_data
 from services.cli.progress import ProgressLine
 from services.cli.standards import AT_NEXT_START, SHIPPED, own_standards
 from services.evaluation.attempt import AROUND_S, FoundAttempt
-from services.evaluation.new_standard import PerformanceError, standard_of
+from services.evaluation.new_standard import require_found, standard_of
 from services.evaluation.resampling import resampled
 from services.evaluation.search import attempts_in, leading_side, performances_like
 from services.evaluation.track import Track
@@ -162,9 +163,13 @@ def _of_another_school(file: Path, order: Import) -> Standard:
     name = readable(str(file))
     if order != Import(order.action):
         raise UserError(f"{name} is a standard, of which nothing is open; leave out all options but --action")
-    standard = decode(read_file(file, "standard"), name)
+    standard = decode_own(read_file(file, "standard"), name)
     if standard.action != order.action:
         raise UserError(f"{name} is a standard of '{standard.action}'; correct --action")
+    try:
+        require_found(standard)
+    except PerformanceError as error:
+        raise UserError(f"{name} {error}; take the file of another one") from error
     return standard
 
 

@@ -16,7 +16,8 @@ def check(site: Site, _rig: Rig, data: Path) -> None:
     Raises:
         UserError: names the file and what is wrong.
     """
-    if site.evaluation == EvaluationConfig() and not (data / SCHOOL_FOLDER).is_dir():
+    school = data / SCHOOL_FOLDER
+    if site.evaluation == EvaluationConfig() and not (school.is_symlink() or school.exists()):
         return
     from services.evaluation.taught import configuration  # noqa: PLC0415 - see above
 

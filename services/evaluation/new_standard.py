@@ -13,7 +13,6 @@ attempt looks that is slower, or by somebody of another build. For both it leans
 """
 
 from dataclasses import replace
-from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -21,10 +20,9 @@ import numpy as np
 from models.arrays import Bool, Float
 from models.interpolation import between
 from models.messages.motion import JointState
-from models.motions.motion import Handed
-from models.skeleton import coco
+from models.teaching.showing import PerformanceError, require_floor, require_movement, require_seen
 from models.teaching.standard import AFTER_S, BEFORE_S, FRAME_S, LONGEST_S, Exemplar, Moments, Standard, same_instants
-from services.evaluation.attempt import AROUND_S, PHASES, FoundAttempt
+from services.evaluation.attempt import AROUND_S, FoundAttempt
 from services.evaluation.normalise import PlacingError, lead_right, placing_of, root_m, size_m
 from services.evaluation.search import attempts_in
 from services.evaluation.stature import stature_of
@@ -32,22 +30,8 @@ from services.evaluation.track import Track, known_track
 
 SURE_M: Final = 0.05
 """Standard deviation along an axis beyond which a joint's place is no model for anybody: it is unknown."""
-LEAST_SEEN: Final = 0.5
-"""Share of the frames between two keyframes in which a limb's joint must be known."""
 MOST_EXEMPLARS: Final = 7
-_LIMBS: Final = tuple(range(coco.INDEX["left_shoulder"], coco.COUNT))
-_FLOOR: Final = (-0.03, 0.13)
-"""Where ankles are that are down, as a share of the stature above the floor."""
-_LOW: Final = 0.1
-"""Of an ankle's heights so many are of one that is down."""
-_LEAST_MOVED: Final = 0.1
-"""Of the stature, by the limb that moves most."""
-_ANKLES: Final = (coco.INDEX["left_ankle"], coco.INDEX["right_ankle"])
 _ROUNDED: Final = 1e-6
-
-
-class PerformanceError(ValueError):
-    """Why a performance can be no standard, in words that go on after its name."""
 
 
 def standard_of(track: Track, attempt: FoundAttempt, base: Standard, origin: str) -> Standard:
@@ -66,23 +50,28 @@ def standard_of(track: Track, attempt: FoundAttempt, base: Standard, origin: str
         PerformanceError: too much of it is unknown, it does not stand on the floor, is too long or goes too far, or nothing moves.
     """
     joints_m, moments_s = _cut(lead_right(track, attempt.handed), attempt.moments_s)
-    _require_seen(joints_m, moments_s, attempt.handed)
+    require_seen(joints_m, moments_s, attempt.handed)
     canonical_m = _canonical(joints_m)
     try:
         performance = Exemplar(canonical_m, moments_s)
     except ValueError as error:
         raise PerformanceError(f"can be no standard: {error}") from error
     stature_m = _stature_m(track, attempt.moments_s, base)
-    _require_floor(performance, stature_m)
-    _require_movement(performance, stature_m)
+    require_floor(performance, stature_m)
+    require_movement(performance, stature_m)
     exemplars = (base.performance, *base.exemplars)[:MOST_EXEMPLARS]
     try:
         standard = Standard(attempt.action, 1, origin, performance, _spread_m(performance, stature_m, base), stature_m, exemplars)
     except ValueError as error:
         raise PerformanceError(f"can be no standard: {error}") from error
+    require_found(standard)
+    return standard
+
+
+def require_found(standard: Standard) -> None:
+    """PerformanceError unless who performs just like a standard is found by it."""
     if not _finds_itself(standard):
         raise PerformanceError("is not like an attempt at anything: none would be found by it")
-    return standard
 
 
 def _cut(track: Track, moments_s: Moments) -> tuple[Float, Moments]:
@@ -120,26 +109,6 @@ def _sure(track: Track) -> Bool:
         return np.asarray((track.states == JointState.SEEN) & (variance_m2 <= SURE_M**2))
 
 
-def _require_seen(joints_m: Float, moments_s: Moments, handed: Handed) -> None:
-    """A limb that is hidden in a whole phase would be grey for every pupil from now on."""
-    known: Bool = np.asarray(np.isfinite(joints_m).all(axis=2))
-    hidden = []
-    for (begins, begin_s), (ends, end_s) in pairwise(zip(PHASES, moments_s, strict=True)):
-        first, last = (round(moment_s / FRAME_S) for moment_s in (begin_s, end_s))
-        share = known[first : last + 1].mean(axis=0)
-        names = [_own_name(joint, handed) for joint in _LIMBS if share[joint] < LEAST_SEEN]
-        if names:
-            told = " and ".join(names) if len(names) < len(_LIMBS) else "whole body"
-            hidden.append(f"the {told} from {begins} to {ends}")
-    if hidden:
-        raise PerformanceError(f"was not seen well enough: too little of {'; of '.join(hidden)}")
-
-
-def _own_name(joint: int, handed: Handed) -> str:
-    """Of a joint of the standard, what it is of the pupil."""
-    return coco.NAMES[coco.MIRROR[joint] if handed == "left" else joint].replace("_", " ")
-
-
 def _stature_m(track: Track, moments_s: Moments, base: Standard) -> float:
     """By all lengths of the body, or, where the head is not known, by trunk and legs alone.
 
@@ -149,22 +118,6 @@ def _stature_m(track: Track, moments_s: Moments, base: Standard) -> float:
     joints_m = np.where(_sure(part)[..., None], part.joints_m, np.nan)
     told = stature_of(known_track(joints_m, FRAME_S)).metres
     return told if np.isfinite(told) else base.stature_m * size_m(joints_m) / size_m(base.joints_m)
-
-
-def _require_floor(performance: Exemplar, stature_m: float) -> None:
-    # Not the lowest of all: in a roll an ankle is sometimes taken to be below the floor for a moment.
-    low_m = float(np.nanquantile(performance.joints_m[:, _ANKLES, 2], _LOW))
-    if not _FLOOR[0] <= low_m / stature_m <= _FLOOR[1]:
-        raise PerformanceError(
-            f"does not stand on the floor at height 0: of a pupil of {stature_m:.2f} m the ankles come down to {low_m:.2f} m"
-        )
-
-
-def _require_movement(performance: Exemplar, stature_m: float) -> None:
-    first, last = (round(moment_s / FRAME_S) for moment_s in (performance.moments_s[0], performance.moments_s[-1]))
-    limbs = performance.joints_m[first : last + 1, _LIMBS]
-    if np.max(np.nanmax(limbs, axis=0) - np.nanmin(limbs, axis=0)) < _LEAST_MOVED * stature_m:
-        raise PerformanceError("hardly moves between its keyframes")
 
 
 def _finds_itself(standard: Standard) -> bool:

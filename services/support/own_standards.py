@@ -21,10 +21,11 @@ from typing import Final
 
 from models.errors import UserError
 from models.regular_file import require_text
-from models.teaching.standard import Standard, decode, encode
+from models.teaching.showing import decode_own
+from models.teaching.standard import LAST_VERSION, Standard, encode
 from services.support.new_file import write_new, write_over
 from services.support.sync import sync_folder
-from services.support.teaching_files import STANDARD_SUFFIX, STANDARDS, load_standards
+from services.support.teaching_files import STANDARD_SUFFIX, STANDARDS, is_folder, load_standards
 
 VERSIONS: Final = "versions"
 PATIENCE_S: Final = 5.0
@@ -48,7 +49,7 @@ class Kept:
 
     def read(self) -> Standard:
         """What it holds; UserError if it cannot be read."""
-        return decode(_read(self.file), str(self.file))
+        return decode_own(_read(self.file), str(self.file))
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,7 +168,7 @@ class OwnStandards:
         with self._kept_before(standard.action) as before:
             numbered = replace(standard, version=self._next(standard.action))
             data = encode(numbered)
-            decode(data, self.file(standard.action).name)
+            decode_own(data, self.file(standard.action).name)
             write_over(self.file(standard.action), data)
         sync_folder(self.folder)
         return Placed(numbered, before)
@@ -178,7 +179,10 @@ class OwnStandards:
             numbers.append(shipped.version)
         with suppress(UserError):
             numbers += [] if (own := self.own(action)) is None else [own.version]
-        return max(numbers, default=0) + 1
+        last = max(numbers, default=0)
+        if last >= LAST_VERSION:
+            raise UserError(f"a standard of '{action}' has the last number that there is, {last}; move its file away")
+        return last + 1
 
     @contextmanager
     def _kept_before(self, action: str) -> Iterator[int | None]:
@@ -292,7 +296,7 @@ def _lock(descriptor: int, folder: Path) -> None:
 
 def _files(folder: Path) -> list[Path]:
     try:
-        return sorted(folder.iterdir()) if folder.is_dir() else []
+        return sorted(folder.iterdir()) if is_folder(folder) else []
     except OSError as error:
         raise UserError(f"{folder} cannot be read: {error.strerror}; correct its permissions") from error
 
@@ -312,7 +316,7 @@ def _read(file: Path) -> bytes:
 
 def _standard(data: bytes, file: Path) -> Standard:
     """What a file holds that has an action's name; UserError if that is none, or another action's."""
-    standard = decode(data, str(file))
+    standard = decode_own(data, str(file))
     if standard.action != file.stem:
         raise UserError(f"standard {file} is of the action '{standard.action}'; name the file after it")
     return standard

@@ -1,17 +1,18 @@
 """Reads what is taught: the files that KineBox brings, and those of the school's own that count in their place."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib import resources
-from pathlib import Path
+from importlib.resources.abc import Traversable
+from pathlib import Path, PurePath
 from typing import Final, TypeVar
 
 import models.teaching
 from models.config.site import SCHOOL_FOLDER
 from models.errors import UserError
 from models.regular_file import require_text
-from models.teaching import standard
 from models.teaching.schema import Teaching, Vocabulary, decode_teaching
-from models.teaching.standard import Standard
+from models.teaching.showing import decode_own
+from models.teaching.standard import Standard, decode
 
 ACTIONS: Final = "actions"
 STANDARDS: Final = "standards"
@@ -26,10 +27,10 @@ def own_folder(data: Path, teaching: str) -> Path | None:
     """The school's own folder by the site file's `teaching`; None if that names none, and the usual one is not there.
 
     Raises:
-        UserError: the one that it names does not exist, or is not in the data folder.
+        UserError: the one that it names does not exist, or is not in the data folder; or something else has its name.
     """
     folder = folder_of_own(data, teaching)
-    if folder.is_dir():
+    if is_folder(folder):
         return folder
     if not teaching:
         return None
@@ -50,6 +51,23 @@ def folder_of_own(data: Path, teaching: str) -> Path:
     return data / named
 
 
+def is_folder(place: Path) -> bool:
+    """Whether a folder of the school's own is there; UserError if something else is, which somebody took for one."""
+    try:
+        place.lstat()
+    except FileNotFoundError:
+        return False
+    except OSError as error:
+        raise UserError(f"{place} cannot be looked at: {error.strerror}; correct its permissions") from error
+    try:
+        if place.is_dir():
+            return True
+        problem = "a link that leads nowhere" if place.is_symlink() else "a file"
+    except OSError as error:
+        problem = f"a link that cannot be followed ({error.strerror})"
+    raise UserError(f"{place} is {problem}, and no folder; move it away")
+
+
 def load_teachings(own: Path | None, vocabulary: Vocabulary | None) -> dict[str, Teaching]:
     """What is looked for and said, by the action's name.
 
@@ -60,30 +78,44 @@ def load_teachings(own: Path | None, vocabulary: Vocabulary | None) -> dict[str,
     Raises:
         UserError: a file cannot be read, with its name.
     """
-    return _load(own, ACTIONS, TEACHING_SUFFIX, lambda data, name: decode_teaching(data, name, vocabulary))
+    files = _shipped_files(ACTIONS, TEACHING_SUFFIX) | _own_files(own, ACTIONS, TEACHING_SUFFIX)
+    return _contents(files, lambda data, name: decode_teaching(data, name, vocabulary))
 
 
 def load_standards(own: Path | None) -> dict[str, Standard]:
     """How each action is done well, by its name; UserError as for `load_teachings`, or if a file has another action's name."""
-    found = _load(own, STANDARDS, STANDARD_SUFFIX, standard.decode)
+    found = _contents(_shipped_files(STANDARDS, STANDARD_SUFFIX), decode)
+    found |= _contents(_own_files(own, STANDARDS, STANDARD_SUFFIX), decode_own)
     for name, one in found.items():
         if one.action != name:
             raise UserError(f"standard {name}{STANDARD_SUFFIX}: is of the action '{one.action}'; name the file after it")
-    return found
+    return dict(sorted(found.items()))
 
 
-def _load(own: Path | None, kind: str, suffix: str, read: Callable[[bytes, str], Content]) -> dict[str, Content]:
-    """The shipped ones, and over them the school's own, in the order of their names."""
-    files = {file.name: file for file in _SHIPPED.joinpath(kind).iterdir() if file.name.endswith(suffix)}
-    if own is not None and (folder := own / kind).is_dir():
-        files |= {file.name: file for file in folder.iterdir() if file.name.endswith(suffix)}
-    contents = {}
-    for name, file in sorted(files.items()):
-        try:
-            if isinstance(file, Path):
-                require_text(file.stat())
-            data = file.read_bytes()
-        except OSError as error:
-            raise UserError(f"{file} cannot be read: {error.strerror}; correct its permissions, or remove it") from error
-        contents[name.removesuffix(suffix)] = read(data, name)
-    return contents
+def _contents(files: Mapping[str, Traversable], read: Callable[[bytes, str], Content]) -> dict[str, Content]:
+    """Of files by their names, in the order of these; by what the names are without their endings."""
+    return {PurePath(name).stem: read(_read(file), name) for name, file in sorted(files.items())}
+
+
+def _shipped_files(kind: str, suffix: str) -> dict[str, Traversable]:
+    """Those of a kind that KineBox brings, by their names."""
+    return {file.name: file for file in _SHIPPED.joinpath(kind).iterdir() if file.name.endswith(suffix)}
+
+
+def _own_files(own: Path | None, kind: str, suffix: str) -> dict[str, Traversable]:
+    """The school's own of a kind, by their names."""
+    if own is None or not is_folder(own / kind):
+        return {}
+    try:
+        return {file.name: file for file in sorted((own / kind).iterdir()) if file.name.endswith(suffix)}
+    except OSError as error:
+        raise UserError(f"folder {own / kind} cannot be read: {error.strerror}; correct its permissions") from error
+
+
+def _read(file: Traversable) -> bytes:
+    try:
+        if isinstance(file, Path):
+            require_text(file.stat())
+        return file.read_bytes()
+    except OSError as error:
+        raise UserError(f"{file} cannot be read: {error.strerror}; correct its permissions, or remove it") from error

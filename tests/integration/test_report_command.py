@@ -187,6 +187,14 @@ def test_a_lesson_of_another_box_is_reported_by_what_ships_and_that_is_said(
     assert capsys.readouterr().err.startswith("note: ")
 
 
+def test_a_file_in_the_place_of_the_schools_folder_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "school").write_text("")
+    file = recorded(tmp_path / "lessons", log_of(None, *said()), SITE)
+    assert len(reported(file, Order(), tmp_path / "r.json", data=tmp_path).attempts) == 2
+    told = f"note: {tmp_path / 'school'} is a file, and no folder; move it away; what KineBox brings counts\n"
+    assert capsys.readouterr().err == told
+
+
 def test_csv_and_page_are_of_the_same_attempts(tmp_path: Path) -> None:
     file = recorded(tmp_path, log_of(None, *said()))
     for form in ("csv", "html"):

@@ -8,7 +8,8 @@ import pytest
 
 from models.messages.feedback import Colour
 from models.motions.motion import Handed
-from models.teaching.standard import FRAME_S, encode
+from models.skeleton import coco
+from models.teaching.standard import FRAME_S, Exemplar, Standard, encode
 from services.cli.new_standards import Import, bring_in
 from services.cli.standards import restore
 from services.evaluation.appraisal import Moments, appraise
@@ -143,3 +144,53 @@ def test_a_file_that_is_no_standard_of_that_action_is_refused(tmp_path: Path) ->
     file.write_bytes(b"damaged")
     assert f"{file}: is no standard's file, or is damaged" in import_refused(tmp_path, file, Import("squat"))
     assert "standard gone.npz does not exist" in import_refused(tmp_path, Path("gone.npz"), Import("squat"))
+
+
+def without(standard: Standard, joint: str) -> Exemplar:
+    """Its performance, of which nobody ever saw a joint."""
+    joints = standard.joints_m.copy()
+    joints[:, coco.INDEX[joint]] = np.nan
+    return Exemplar(joints, standard.moments_s)
+
+
+def showing_nothing() -> dict[str, tuple[Exemplar, str]]:
+    """What a file of another school may hold in the place of a performance, and why it can be none."""
+    squat = shipped().standards["squat"]
+    joints, moments_s = squat.joints_m, squat.moments_s
+    raised = joints + np.array((0.0, 0.0, 1.0))
+    jump = np.stack([joints[0], joints[round(moments_s[2] / FRAME_S)]])
+    return {
+        "nobody": (Exemplar(np.full_like(joints, np.nan), moments_s), "was not seen well enough: unknown are the whole body from"),
+        "no left knee": (without(squat, "left_knee"), "was not seen well enough: unknown are left knee from start to exertion"),
+        "a point": (Exemplar(np.zeros_like(joints), moments_s), "hardly moves between its keyframes"),
+        "a statue": (Exemplar(np.repeat(joints[:1], len(joints), axis=0), moments_s), "hardly moves between its keyframes"),
+        "in the air": (Exemplar(raised, moments_s), "does not stand on the floor at height 0"),
+        "two frames": (Exemplar(joints[:2], (0.0, 0.01, 0.02, 0.05)), "hardly moves between its keyframes"),
+        "two frames that differ": (Exemplar(jump, (0.0, 0.01, 0.02, 0.05)), "is not like an attempt at anything"),
+    }
+
+
+@pytest.mark.parametrize("what", showing_nothing())
+def test_a_standard_of_another_school_must_show_what_one_from_a_lesson_must(tmp_path: Path, what: str) -> None:
+    performance, told = showing_nothing()[what]
+    spread_m = np.full((len(performance.joints_m), coco.COUNT), np.nan)
+    file = tmp_path / "squat.npz"
+    file.write_bytes(encode(replace(shipped().standards["squat"], performance=performance, spread_m=spread_m)))
+    line = import_refused(tmp_path, file, Import("squat"))
+    assert line.startswith(str(file))
+    assert told in line
+
+
+def test_a_standard_of_another_school_whose_exemplars_show_nothing_is_refused(tmp_path: Path) -> None:
+    squat = shipped().standards["squat"]
+    file = tmp_path / "squat.npz"
+    file.write_bytes(encode(replace(squat, exemplars=(without(squat, "left_knee"),))))
+    assert "unknown are left knee" in import_refused(tmp_path, file, Import("squat"))
+
+
+def test_every_standard_that_ships_can_be_taken_to_another_school(tmp_path: Path) -> None:
+    for action, standard in shipped().standards.items():
+        file = tmp_path / f"{action}.npz"
+        file.write_bytes(encode(standard))
+        bring_in(file, tmp_path, None, Import(action))
+        assert counting(tmp_path, action).version == 2

@@ -210,6 +210,12 @@ def test_a_damaged_standard_is_listed_as_that_and_can_be_replaced(tmp_path: Path
     assert holds(tmp_path) == before
 
 
+def test_a_file_in_the_place_of_the_schools_folder_is_named(tmp_path: Path) -> None:
+    (tmp_path / "school").write_text("")
+    with pytest.raises(UserError, match=f"{tmp_path / 'school'} is a file, and no folder; move it away"):
+        standards.listed(tmp_path, None, json=False)
+
+
 def test_one_that_was_copied_to_the_versions_is_listed_with_the_number_of_its_name(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from models.skeleton import coco
+from models.teaching.showing import PerformanceError
 from models.teaching.standard import FRAME_S, Standard, decode, encode
-from services.evaluation.new_standard import PerformanceError, standard_of
+from services.evaluation.new_standard import standard_of
 from services.evaluation.normalise import mirrored
 from services.evaluation.resampling import resampled
 from services.evaluation.track import Track, known_track

@@ -10,12 +10,13 @@ from models.messages.feedback import Colour, Feedback
 from models.messages.motion import JointState
 from models.motions.motion import Handed
 from models.skeleton import coco
+from models.teaching.showing import PerformanceError
 from models.teaching.standard import FRAME_S, Exemplar, Standard, decode, encode
 from services.evaluation.appraisal import Moments, appraise
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.attempts import AttemptFinder
 from services.evaluation.config import EvaluationConfig
-from services.evaluation.new_standard import PerformanceError, standard_of
+from services.evaluation.new_standard import standard_of
 from services.evaluation.normalise import facing, mirrored, root_m
 from services.evaluation.search import attempts_in, leading_side
 from services.evaluation.track import Track, known_track

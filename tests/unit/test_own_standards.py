@@ -1,16 +1,22 @@
 """A school's own standards: what counts, what is kept, which folder is meant, and that no version is ever lost."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from models.errors import UserError
-from models.teaching.standard import Standard, encode
+from models.teaching.standard import LAST_VERSION, Exemplar, Standard, encode
+from services.evaluation.check import check
+from services.site_file.reading import read_site
 from services.support.own_standards import OwnStandards
-from services.support.teaching_files import folder_of_own, load_standards, own_folder
+from services.support.teaching_files import folder_of_own, load_standards, load_teachings, own_folder
+from tests.installed import ROOT
 
 SQUAT = load_standards(None)["squat"]
+ROOM = read_site(ROOT / "deploy/sites/simulated/site.toml")
 
 
 def named(origin: str) -> Standard:
@@ -172,6 +178,69 @@ def test_a_link_that_somebody_made_in_the_data_folder_may_lead_elsewhere(tmp_pat
     (tmp_path / "shared").mkdir()
     (tmp_path / "data/ours").symlink_to(tmp_path / "shared")
     assert own_folder(tmp_path / "data", "ours") == tmp_path / "data/ours"
+
+
+@pytest.mark.parametrize("teaching", ["", "school"])
+@pytest.mark.parametrize(
+    ("kind", "told"),
+    [
+        ("file", "is a file, and no folder; move it away"),
+        ("link to nowhere", "is a link that leads nowhere, and no folder; move it away"),
+        ("link to itself", "is a link that leads nowhere, and no folder; move it away"),
+    ],
+)
+def test_what_is_no_folder_is_not_taken_for_a_school_without_one(tmp_path: Path, kind: str, told: str, teaching: str) -> None:
+    school = tmp_path / "school"
+    if kind == "file":
+        school.write_text("")
+    else:
+        school.symlink_to("elsewhere" if kind == "link to nowhere" else "school")
+    with pytest.raises(UserError, match=f"{school} {told}"):
+        own_folder(tmp_path, teaching)
+    with pytest.raises(UserError, match=f"{school} {told}"):
+        check(*ROOM, tmp_path)
+
+
+def words(own: Path) -> object:
+    """What is taught there."""
+    return load_teachings(own, None)
+
+
+@pytest.mark.parametrize(("kind", "read"), [("actions", words), ("standards", load_standards)])
+def test_a_file_in_the_place_of_a_folder_in_it_is_named(tmp_path: Path, kind: str, read: Callable[[Path], object]) -> None:
+    (tmp_path / kind).write_text("")
+    with pytest.raises(UserError, match=f"{tmp_path / kind} is a file, and no folder; move it away"):
+        read(tmp_path)
+
+
+def test_a_list_of_standards_names_a_file_in_the_place_of_their_folder(tmp_path: Path) -> None:
+    (tmp_path / "standards").write_text("")
+    with pytest.raises(UserError, match=r"standards is a file, and no folder"):
+        _ = OwnStandards(tmp_path).actions
+
+
+@pytest.mark.parametrize("name", ["squat.npz", "versions/squat-999999.npz"])
+def test_after_the_last_number_that_there_is_a_new_one_is_one_line_and_no_defect(tmp_path: Path, name: str) -> None:
+    (tmp_path / "standards/versions").mkdir(parents=True)
+    (tmp_path / "standards" / name).write_bytes(encode(replace(SQUAT, version=LAST_VERSION)))
+    before = holds(tmp_path)
+    with pytest.raises(UserError, match="a standard of 'squat' has the last number that there is, 999999; move its file away"):
+        OwnStandards(tmp_path).put(named("a"))
+    assert holds(tmp_path) == before
+
+
+def test_a_standard_that_shows_nothing_is_named_wherever_it_is_read(tmp_path: Path) -> None:
+    own = OwnStandards(tmp_path)
+    own.put(named("a"))
+    own.put(named("b"))
+    nothing = replace(SQUAT, performance=Exemplar(np.zeros_like(SQUAT.joints_m), SQUAT.moments_s))
+    own.kept("squat")[0].file.write_bytes(encode(nothing))
+    with pytest.raises(UserError, match=r"squat-2\.npz: its performance hardly moves between its keyframes; take"):
+        own.bring_back("squat", 2)
+    own.file("squat").write_bytes(encode(nothing))
+    for read in (lambda: own.counts("squat"), lambda: load_standards(tmp_path)):
+        with pytest.raises(UserError, match=r"squat\.npz: its performance hardly moves between its keyframes; take"):
+            read()
 
 
 def test_a_folder_that_cannot_be_read_is_one_line(tmp_path: Path) -> None:

@@ -88,6 +88,8 @@ def test_a_flipped_byte_is_refused_or_does_no_harm() -> None:
         ({"moments_s": np.zeros((3, 4))}, "is damaged"),
         ({"version": np.array(0)}, "is damaged"),
         ({"version": np.array("1")}, "is damaged"),
+        ({"version": np.array(2**64 - 1, np.uint64)}, "is damaged .*a version from 1 to 999999"),
+        ({"version": np.array(10**6)}, "is damaged .*a version from 1 to 999999"),
         ({"stature_m": np.array(np.nan)}, "is damaged"),
         ({"action": np.array("")}, "is damaged"),
         ({"spread": np.zeros((3, 17), np.uint16)}, "is damaged"),
