@@ -16,6 +16,7 @@ CALIBRATION_CODES: tuple[CalibrationCode, ...] = get_args(CalibrationCode)
 """What the cameras see is not what the calibration says."""
 FusionCode = Literal["camera_unheard", "pictures_not_fused", "epochs_differ"]
 EvaluationCode = Literal["motion_missed"]
+TabletCode = Literal["words_unreadable"]
 RecorderCode = Literal["not_recording", "recording_stalled"]
 SupervisorCode = Literal["given_up", "restarting", "log_not_kept", "machine_unmeasured"]
 TroubleCode = Literal[
@@ -26,6 +27,7 @@ TroubleCode = Literal[
     CalibrationCode,
     FusionCode,
     EvaluationCode,
+    TabletCode,
     RecorderCode,
     SupervisorCode,
 ]

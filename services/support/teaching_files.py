@@ -82,6 +82,29 @@ def load_teachings(own: Path | None, vocabulary: Vocabulary | None) -> dict[str,
     return _contents(files, lambda data, name: decode_teaching(data, name, vocabulary))
 
 
+def load_words(data: Path, teaching: str) -> tuple[dict[str, Teaching], tuple[str, ...]]:
+    """The same for whoever has more to do than to show words: in the place of what cannot be read, what KineBox brings counts.
+
+    Args:
+        data: the data folder.
+        teaching: of the site file.
+
+    Returns:
+        What counts, by the action's name, and a line for people of each file, or folder, that cannot be read.
+    """
+    found, damaged = load_teachings(None, None), []
+    try:
+        files = _own_files(own_folder(data, teaching), ACTIONS, TEACHING_SUFFIX)
+    except UserError as error:
+        return found, (str(error),)
+    for name, file in files.items():
+        try:
+            found[PurePath(name).stem] = decode_teaching(_read(file), name, None)
+        except UserError as error:
+            damaged.append(str(error))
+    return dict(sorted(found.items())), tuple(damaged)
+
+
 def load_standards(own: Path | None) -> dict[str, Standard]:
     """How each action is done well, by its name; UserError as for `load_teachings`, or if a file has another action's name."""
     found = _contents(_shipped_files(STANDARDS, STANDARD_SUFFIX), decode)

@@ -22,13 +22,12 @@ from models.messages.trouble import messages_refused
 from models.process import Bus, Delivery, ProcessContext, Subscription
 from services.support import listening
 from services.support.health import PERIOD_S, HealthReporter
-from services.support.teaching_files import load_teachings, own_folder
 from services.tablet.door import Door, places
 from services.tablet.page import PAGE, require_page
 from services.tablet.page_socket import PageSocket
 from services.tablet.room_state import RoomState
 from services.tablet.server import TabletServer, Told, create_app
-from services.tablet.teaching_words import words_of
+from services.tablet.taught import AGAIN_AFTER_S, Taught
 
 _RECEIVE_TIMEOUT_S = 0.1
 _SHUTDOWN_S = 1
@@ -43,18 +42,18 @@ def main(context: ProcessContext) -> None:
     """Serve the page until `context.stop` is set.
 
     Raises:
-        UserError: the page is not built, what is taught cannot be read, or the port cannot be listened on.
+        UserError: the page is not built, or the port cannot be listened on.
         Exception: what one of the server's parts failed with; without it the page would show a past for ever.
     """
     require_page(PAGE)
     site = context.site
-    teaching = words_of(load_teachings(own_folder(context.data, site.evaluation.teaching), None), site.evaluation.language)
+    taught = Taught(context.data, site.evaluation)
     listener = listen(site.tablet)
     cameras = tuple(camera.name for camera in site.cameras)
     room = RoomState(site.name, cameras, site.fusion.live_hz, time.monotonic_ns(), context.playback)
-    server = TabletServer(room, time.monotonic_ns, teaching, lambda told: _tell(context.bus, told))
+    server = TabletServer(room, time.monotonic_ns, taught.words, lambda told: _tell(context.bus, told))
     try:
-        asyncio.run(_serve(context, server, listener))
+        asyncio.run(_serve(context, server, listener, taught))
     finally:
         listener.close()
 
@@ -101,7 +100,7 @@ class _Uvicorn(uvicorn.Server):
         return H11Protocol(self.config, self.server_state, app_state={})
 
 
-async def _serve(context: ProcessContext, server: TabletServer, listener: socket.socket) -> None:
+async def _serve(context: ProcessContext, server: TabletServer, listener: socket.socket, taught: Taught) -> None:
     web = _Uvicorn(
         uvicorn.Config(
             create_app(server, PAGE),
@@ -143,7 +142,8 @@ async def _serve(context: ProcessContext, server: TabletServer, listener: socket
     entrance = asyncio.create_task(door.let_in(), name="door")
     endless = (
         asyncio.create_task(server.show_statuses(), name="statuses"),
-        asyncio.create_task(_publish_health(context, server), name="health"),
+        asyncio.create_task(_publish_health(context, server, taught), name="health"),
+        asyncio.create_task(_read_again(taught, server), name="words"),
         asyncio.create_task(_beat(context), name="beat"),
         asyncio.create_task(door.show_out(), name="connections"),
         entrance,
@@ -201,14 +201,21 @@ async def _beat(context: ProcessContext) -> None:
         await asyncio.sleep(_BEAT_S)
 
 
-async def _publish_health(context: ProcessContext, server: TabletServer) -> None:
-    """Say how this process is, once a second: degraded if, since it last said so, messages could not be read."""
+async def _read_again(taught: Taught, server: TabletServer) -> None:
+    """Take the school's words as soon as somebody has mended them; those that could be read at the start are kept to."""
+    while True:
+        await asyncio.sleep(AGAIN_AFTER_S)
+        if taught.troubles:
+            await asyncio.to_thread(taught.read)
+            server.teaching = taught.words
+
+
+async def _publish_health(context: ProcessContext, server: TabletServer, taught: Taught) -> None:
+    """Say how this process is, once a second: degraded if words cannot be read, or, since it last said so, messages."""
     reporter = HealthReporter(context.name, context.bus, context.resources)
     counted = 0
     while True:
         rejected, counted = server.room.rejected_bus_messages - counted, server.room.rejected_bus_messages
-        if rejected:
-            reporter.report("degraded", (messages_refused(rejected),))
-        else:
-            reporter.report()
+        troubles = (*taught.troubles, *([messages_refused(rejected)] if rejected else []))
+        reporter.report("degraded" if troubles else "ok", troubles)
         await asyncio.sleep(PERIOD_S)

@@ -266,7 +266,7 @@ def create_app(server: TabletServer, page: Path | None) -> FastAPI:
         """The room in Prometheus's text format, see docs/metrics.md."""
         return Response(metrics.render(server), media_type=metrics.CONTENT_TYPE)
 
-    app.include_router(teaching_routes.routes(server.attempts, server.teaching))
+    app.include_router(teaching_routes.routes(server.attempts, lambda: server.teaching))
 
     @app.websocket("/ws")
     async def watch(socket: WebSocket) -> None:

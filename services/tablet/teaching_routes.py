@@ -1,5 +1,7 @@
 """What the page asks for over HTTP about attempts: the words, the list, and each one's slow replay."""
 
+from collections.abc import Callable
+
 from fastapi import APIRouter, HTTPException, Response
 
 from services.tablet import attempt_replay
@@ -7,14 +9,14 @@ from services.tablet.attempts import Attempts
 from services.tablet.messages import Attempt, Teaching
 
 
-def routes(attempts: Attempts, teaching: Teaching) -> APIRouter:
-    """The routes, for `server.create_app`."""
+def routes(attempts: Attempts, teaching: Callable[[], Teaching]) -> APIRouter:
+    """The routes, for `server.create_app`; `teaching` gives the words as they are now."""
     router = APIRouter(prefix="/api")
 
     @router.get("/teaching")
     async def read_teaching() -> Teaching:
         """What can be chosen, and what is said about it, in every language."""
-        return teaching
+        return teaching()
 
     @router.get("/attempts")
     async def read_attempts() -> list[Attempt]:

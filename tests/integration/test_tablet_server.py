@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from websockets.exceptions import ConnectionClosed, ConnectionClosedError, Inval
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
+import models.teaching
 from models.config.site import TabletConfig
 from models.errors import UserError
 from models.messages import codec, topics
@@ -26,7 +28,10 @@ from models.process import Subscription
 from services.tablet import motion_frame, openapi, page_socket, process
 from services.tablet.audience import MAX_CLIENTS, MAX_OF_ONE_ADDRESS, READ_BURST, READ_HZ
 from services.tablet.server import TabletServer
+from tests.browser import room as room_module
 from tests.browser.room import CAMERAS, Room, tablet_context
+from tests.integration import waiting
+from tests.taught import shipped
 
 GENEROUS_S = 30.0
 
@@ -349,3 +354,36 @@ def test_prometheus_reads_the_room_over_the_pages_port(room: Room) -> None:
     assert {camera for camera, _ in states} == set(CAMERAS)
     assert read["kinebox_live_motion_hertz"].samples[0].value > 0
     assert read["kinebox_machine_temperature_celsius"].samples[0].value == 63.0
+
+
+def test_a_server_that_cannot_read_its_words_shows_the_figure_names_the_file_and_takes_them_once_they_are_mended(
+    room: Room, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Somebody was at work on the file as the server died: half of it was saved."""
+    file = tmp_path / "data/school/actions/squat.toml"
+    file.parent.mkdir(parents=True)
+    file.write_text("version = 1\n")
+    monkeypatch.setattr(room_module, "PAGE", tmp_path / "data")
+    monkeypatch.setattr(process, "AGAIN_AFTER_S", 0.05)
+    room.stop_server()
+    room.start_server()
+    with join(room) as client:
+        assert next_motion(client).sequence >= 0
+    waiting.until(lambda: said_of_itself(room)[0] == "degraded", "that something is wrong")
+    assert "teaching file squat.toml: `action` is missing; add it" in said_of_itself(room)[1]
+    assert english(room, "squat") == shipped().teachings["squat"].title.en
+    text = resources.files(models.teaching).joinpath("actions/squat.toml").read_text(encoding="utf-8")
+    file.write_text(text.replace(f'en = "{english(room, "squat")}"', 'en = "Chair without a chair"', 1), encoding="utf-8")
+    waiting.until(lambda: english(room, "squat") == "Chair without a chair", "the mended words")
+    waiting.until(lambda: said_of_itself(room) == ("ok", ""), "that all is well")
+
+
+def said_of_itself(room: Room) -> tuple[str, str]:
+    """State and reason of the page's server, as the page has them."""
+    processes = httpx.get(f"{room.page}api/status").json()["processes"]
+    return next(((one["state"], one["reason"]) for one in processes if one["name"] == "tablet"), ("", ""))
+
+
+def english(room: Room, action: str) -> str:
+    """An action's title on the page."""
+    return str(httpx.get(f"{room.page}api/teaching").json()["actions"][action]["title"]["en"])
