@@ -67,6 +67,7 @@ class RecorderHealth(msgspec.Struct, frozen=True, omit_defaults=True):
         began_ns: CLOCK_MONOTONIC of its begin; 0 while nothing is recorded.
         attempts: how many it holds, as `kinebox report` counts them.
         newest: `Feedback.id` of the last of them, in their order: the last one is number `attempts`.
+        asked_ns: `LessonRequest.t_ns` of the request that began it; 0 if it began by itself, or goes on after the recorder died.
     """
 
     lesson: str
@@ -77,6 +78,7 @@ class RecorderHealth(msgspec.Struct, frozen=True, omit_defaults=True):
     began_ns: Count = 0
     attempts: Count = 0
     newest: Annotated[tuple[Count, ...], Meta(max_length=REMEMBERED)] = ()
+    asked_ns: Count = 0
 
     def __post_init__(self) -> None:
         if len(self.newest) > self.attempts:

@@ -91,17 +91,20 @@ class SegmentRequest(msgspec.Struct, frozen=True):
         require_count("sequence", self.sequence)
 
 
-class LessonRequest(msgspec.Struct, frozen=True):
+class LessonRequest(msgspec.Struct, frozen=True, omit_defaults=True):
     """Begin or end a lesson (command line -> recorder).
 
     Attributes:
         action: "start" while one is being recorded changes nothing.
         title: what people call it; at most `MAX_TITLE` characters; without meaning for "stop".
+        t_ns: CLOCK_MONOTONIC when it was asked first; names the request of who wants to know whether the lesson is his.
     """
 
     action: Literal["start", "stop"]
     title: str = ""
+    t_ns: int = 0
 
     def __post_init__(self) -> None:
+        require_count("t_ns", self.t_ns)
         if len(self.title) > MAX_TITLE:
             raise ValueError(f"a title has at most {MAX_TITLE} characters")

@@ -50,12 +50,14 @@ def record(site: Site, data: Path, title: str, seconds: float | None) -> None:
         typer.echo(f"recording {lesson}; Ctrl-C ends it" if seconds is None else f"recording {lesson} for {clock(seconds)}")
         note_of_another(site, lesson, data)
         try:
-            last = _watch(remote, lesson, seconds, stop, site.bus.endpoint)
+            ended = _watch(remote, lesson, seconds, stop, site.bus.endpoint)
         except _BoxGoneError as error:
             raise UserError(f"{error}. {_left(lesson, site, data)}") from error
-        if last is None:
-            last = remote.stop()
-        typer.echo(_recorded(lesson, last, site, data))
+        if ended is None:
+            typer.echo(_recorded(lesson, remote.stop(), site, data))
+        else:
+            early = "" if seconds is None else f" before its {clock(seconds)}"
+            typer.echo(f"{_recorded(lesson, ended, site, data)}; somebody else ended it{early}")
     finally:
         bus.close()
 

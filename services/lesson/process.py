@@ -96,7 +96,7 @@ class RecorderLoop:
             self._rejected += 1
             return
         if wish.action == "start":
-            self._recorder.start(wish.title)
+            self._recorder.start(wish.title, wish.t_ns)
         else:
             self._recorder.stop()
         self._second_passed()  # Who wished it is waiting to hear that it was done.

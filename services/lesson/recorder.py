@@ -50,6 +50,7 @@ class _Running:
     writer: LessonWriter
     following: Following
     heard_ns: int
+    asked_ns: int
 
 
 class Recorder:
@@ -86,8 +87,8 @@ class Recorder:
         if unfinished is not None:
             self._begin(unfinished, "the recorder was started again")
 
-    def start(self, title: str) -> None:
-        """Begin a lesson, unless one is being recorded."""
+    def start(self, title: str, asked_ns: int = 0) -> None:
+        """Begin a lesson, unless one is being recorded; `asked_ns` names who asked for it."""
         if self._running is not None:
             return
         free_mb = self._free_mb()
@@ -104,7 +105,7 @@ class Recorder:
             self._trouble(f"no lesson was begun: {error}", "")
             return
         self._ended = None
-        self._begin(writer)
+        self._begin(writer, asked_ns=asked_ns)
         log.info("lesson begins", lesson=_name(writer), title=title)
 
     def stop(self) -> None:
@@ -194,6 +195,7 @@ class Recorder:
             began_ns=writer.header.started_ns,
             attempts=writer.attempts,
             newest=writer.newest_attempts,
+            asked_ns=running.asked_ns,
         )
 
     def _note_wish(self) -> None:
@@ -203,12 +205,12 @@ class Recorder:
             words = "that no lesson shall begin by itself could not be noted: if the recorder is started again, one does"
             log.warning(words, folder=str(self._folder), reason=error.strerror)
 
-    def _begin(self, writer: LessonWriter, gap: str = "") -> None:
+    def _begin(self, writer: LessonWriter, gap: str = "", asked_ns: int = 0) -> None:
         now_ns = self._clock_ns()
         segment_ns, _ = writer.position
         if not segment_ns:
             gap = ""  # Before the first part nothing is missing.
-        self._running = _Running(writer, Following(now_ns, gap, *writer.position), heard_ns=now_ns)
+        self._running = _Running(writer, Following(now_ns, gap, *writer.position), heard_ns=now_ns, asked_ns=asked_ns)
 
     def _finish(self, why: str = "", remedy: str = "") -> None:
         """End the lesson; `why` it had to end, if nobody wished it, and what to do."""

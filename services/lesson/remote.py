@@ -48,8 +48,12 @@ class Remote:
         """
         now = self._current()
         if now.lesson:
-            raise UserError(f"lesson {now.lesson} is being recorded already; end it with 'kinebox record --stop'")
-        return self._ask(LessonRequest("start", title), lambda recorder: bool(recorder.lesson), "begin a lesson")
+            raise _taken(now)
+        request = LessonRequest("start", title, time.monotonic_ns())
+        begun = self._ask(request, lambda recorder: bool(recorder.lesson), "begin a lesson")
+        if begun.asked_ns != request.t_ns:  # Somebody else asked at the same time, and was heard first.
+            raise _taken(begun)
+        return begun
 
     def stop(self) -> RecorderHealth | None:
         """End the lesson that is being recorded; its last state before, or None if none was.
@@ -116,6 +120,10 @@ class Remote:
                 raise UserError(f"the recorder cannot {what}: {health.reason}")
         reason = f": {self.newest.reason}" if self.newest is not None and self.newest.reason else ""
         raise UserError(f"the recorder did not {what} within {DONE_WITHIN_S:g} s{reason}")
+
+
+def _taken(recorder: RecorderHealth) -> UserError:
+    return UserError(f"lesson {recorder.lesson} is being recorded already; end it with 'kinebox record --stop'")
 
 
 def _comes_back(health: Health) -> bool:

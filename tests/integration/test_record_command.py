@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -138,6 +139,15 @@ def test_a_lesson_is_begun_and_left_seen_to_run_and_ended_from_elsewhere(tmp_pat
         assert "is not finished" in refusal(kinebox("lessons", "delete", lesson, "--data", str(box.data), "--yes"))
         assert record(box, "--stop").stdout.startswith(f"recorded {box.lessons / lesson}.mcap")
         until(lambda: not part.exists(), "the lesson to be finished")
+
+
+def test_of_two_lessons_that_are_asked_for_at_once_the_second_is_refused_and_ends_nothing(tmp_path: Path) -> None:
+    with Box(tmp_path, LessonsConfig()).running() as box, box.recorder(), ThreadPoolExecutor() as together:
+        short, long = together.map(lambda length: record(box, "--for", length), ("2s", "4s"))
+    first, second = (short, long) if long.returncode else (long, short)
+    assert "is being recorded already" in refusal(second)
+    assert first.returncode == 0, first.stderr
+    assert "somebody else" not in first.stdout
 
 
 def test_a_lesson_asked_for_before_the_recorder_has_started_is_recorded_once_it_has(tmp_path: Path) -> None:

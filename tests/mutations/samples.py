@@ -151,7 +151,7 @@ def by_topic() -> dict[str, list[bytes]]:
     found |= {topics.beat(name): [b"4711", b"1"] for name in ("fusion", "tablet")}
     found[topics.fusion_log()] = [codec.encode(log(t_ns))]
     found[topics.segment_request()] = [codec.encode(SegmentRequest(t_ns))]
-    found[topics.lesson_request()] = [codec.encode(LessonRequest("start", "a lesson")), codec.encode(LessonRequest("stop"))]
+    found[topics.lesson_request()] = [codec.encode(LessonRequest("start", "a lesson", t_ns)), codec.encode(LessonRequest("stop"))]
     found[topics.feedback()] = [codec.encode(feedback(t_ns))]
     found[topics.activity_request()] = [codec.encode(ActivityRequest("long_jump")), codec.encode(ActivityRequest(""))]
     found[topics.pupil_turn()] = [codec.encode(PupilTurn("B12", t_ns)), codec.encode(PupilTurn(NOBODY, t_ns))]

@@ -5,18 +5,19 @@ import pytest
 from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.health import Health, RecorderHealth
+from models.messages.lesson import LessonRequest
 from models.messages.trouble import Trouble
 from models.process import Bus
-from services.bus.memory import MemoryRouter
+from services.bus.memory import MemoryBus, MemoryRouter
 from services.lesson import remote as remote_module
 from services.lesson.remote import Remote, require_title
 
 ENDED = Trouble("not_recording", "lesson 7b ended: No space left on device", "make room on the disk")
 
 
-def said(lesson: str, trouble: Trouble | None = None) -> bytes:
+def said(lesson: str, trouble: Trouble | None = None, asked_ns: int = 0) -> bytes:
     troubles = () if trouble is None else (trouble,)
-    recorder = RecorderHealth(lesson, "", 10.0 if lesson else 0.0, 1, 0)
+    recorder = RecorderHealth(lesson, "", 10.0 if lesson else 0.0, 1, 0, asked_ns=asked_ns)
     return codec.encode(Health("recorder", 1, 5, "degraded" if troubles else "ok", troubles, 0.1, 50.0, recorder=recorder))
 
 
@@ -27,6 +28,35 @@ def asked(*words: bytes) -> tuple[Remote, Bus]:
     for word in words:
         box.publish(topics.health("recorder"), word)
     return remote, box
+
+
+class Answered(MemoryBus):
+    """The place of somebody who asks for a lesson a moment after somebody else, who may have begun it."""
+
+    def __init__(self, router: MemoryRouter, *, before_ns: int) -> None:
+        super().__init__(router)
+        self._before_ns = before_ns
+
+    def publish(self, topic: str, payload: bytes) -> None:
+        request = codec.decode(payload, LessonRequest)
+        assert topic == topics.lesson_request()
+        self.deliver(topics.health("recorder"), said("7b", asked_ns=request.t_ns - self._before_ns))
+
+
+def asking(before_ns: int) -> Remote:
+    bus = Answered(MemoryRouter(), before_ns=before_ns)
+    remote = Remote(bus)
+    bus.deliver(topics.health("recorder"), said(""))
+    return remote
+
+
+def test_who_asks_for_a_lesson_is_told_the_one_that_was_begun_for_him() -> None:
+    assert asking(before_ns=0).start("7b").lesson == "7b"
+
+
+def test_of_two_who_ask_for_a_lesson_at_once_the_second_does_not_take_the_firsts_for_his() -> None:
+    with pytest.raises(UserError, match=r"^lesson 7b is being recorded already; end it with 'kinebox record --stop'$"):
+        asking(before_ns=400_000_000).start("7b")
 
 
 def test_a_lesson_that_ended_as_wished_is_told_with_its_length() -> None:

@@ -172,6 +172,11 @@ def examples() -> dict[str, codec.Message]:
         "fusion_log": FusionLog(10**15, 3, (Entry("observation", 10**15 + 7, b"\x01\x01"), Entry("tick", 10**15 + 8, b""))),
         "segment_request": SegmentRequest(10**15),
         "lesson_request": LessonRequest("start", "7b, throwing"),
+        "lesson_request_named": LessonRequest("start", "7b, throwing", 10**15),
+        "health_recorder_asked": Health(
+            "recorder", 4712, 10**15, "ok", (), 0.01, 60.5,
+            recorder=RecorderHealth("2026-11-22-7b", "7b", 0.0, 2_250, 0, 10**15 - 7, asked_ns=10**15 - 9),
+        ),
     }  # fmt: skip
 
 
@@ -319,7 +324,13 @@ def test_a_place_at_which_nothing_can_be_observed_is_refused_by_the_reader(chang
 @pytest.mark.parametrize("value", [-5, 2**63])
 @pytest.mark.parametrize(
     ("name", "field"),
-    [("fusion_log", "segment_ns"), ("fusion_log", "sequence"), ("fusion_log", "t_ns"), ("segment_request", "t_ns")],
+    [
+        ("fusion_log", "segment_ns"),
+        ("fusion_log", "sequence"),
+        ("fusion_log", "t_ns"),
+        ("segment_request", "t_ns"),
+        ("lesson_request", "t_ns"),
+    ],
 )
 def test_a_time_or_number_in_the_log_that_no_clock_gives_is_refused_by_the_reader(name: str, field: str, value: int) -> None:
     good = examples()[name]

@@ -45,6 +45,16 @@ def test_nothing_is_recorded_and_fusion_is_asked_for_nothing_before_somebody_wis
     assert room.files(PART_SUFFIX) == room.files(SUFFIX) == []
 
 
+def test_a_lesson_is_of_who_asked_for_it_first(room: Room) -> None:
+    room.recorder.start("7b", asked_ns=5)
+    room.recorder.start("7b", asked_ns=6)
+    assert room.recorder.health().asked_ns == 5
+    room.recorder.stop()
+    assert room.recorder.health().asked_ns == 0
+    room.recorder.start("7b", asked_ns=6)
+    assert room.recorder.health().asked_ns == 6
+
+
 def test_a_lesson_is_recorded_from_start_to_stop(room: Room) -> None:
     room.recorder.start("7b, throwing")
     room.record(parts=4)

@@ -1,4 +1,4 @@
-"""Who stays with a lesson is told when nobody is left to record it, and does not wait for ever."""
+"""Who stays with a lesson is told when nobody is left to record it, or somebody else ended it, and does not wait for ever."""
 
 import threading
 import time
@@ -10,6 +10,7 @@ import pytest
 from models.errors import UserError
 from models.messages import codec, topics
 from models.messages.health import Health, RecorderHealth
+from models.messages.lesson import LessonRequest
 from models.messages.trouble import Trouble
 from models.process import Bus
 from services.bus.memory import MemoryRouter
@@ -23,17 +24,19 @@ LESSON = "2026-11-23-7b"
 READ_ONLY = "lessons cannot be written: Read-only file system; correct its permissions"
 
 
-def said(lesson: str, recorded_s: float) -> bytes:
-    return codec.encode(Health("recorder", 1, 5, "ok", (), 0.1, 50.0, recorder=RecorderHealth(lesson, "", recorded_s, 1, 0)))
+def said(lesson: str, recorded_s: float, asked_ns: int = 0) -> bytes:
+    recorder = RecorderHealth(lesson, "", recorded_s, 1, 0, asked_ns=asked_ns)
+    return codec.encode(Health("recorder", 1, 5, "ok", (), 0.1, 50.0, recorder=recorder))
 
 
 def record_and_die(box: Bus) -> None:
     """A recorder that begins the lesson that it is asked for, says so once, and is heard no more."""
     requests = box.subscribe(topics.lesson_request(), keep=4)
-    while requests.receive(0.02) is None:
+    while (asked := requests.receive(0.02)) is None:
         box.publish(topics.health("recorder"), said("", 0.0))
+    asked_ns = codec.decode(asked.payload, LessonRequest).t_ns
     for recorded_s in (0.0, 1.0):
-        box.publish(topics.health("recorder"), said(LESSON, recorded_s))
+        box.publish(topics.health("recorder"), said(LESSON, recorded_s, asked_ns))
 
 
 @pytest.mark.parametrize("seconds", [8.0, None], ids=["for 8 s", "until it is ended"])
@@ -148,6 +151,31 @@ def test_a_recorder_that_is_tried_again_is_waited_for_and_why_is_said(
     assert f"recorded 0:01, 0.0 MB; {READ_ONLY}; it is tried again" in Shown.lines
     assert not [line for line in Shown.lines if "nothing is heard" in line]
     assert f"{LESSON}.mcap, 0:01" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("seconds", "told"),
+    [(20.0, "0:01; somebody else ended it before its 0:20\n"), (None, "0:01; somebody else ended it\n")],
+    ids=["for 20 s", "until it is ended"],
+)
+def test_a_lesson_that_somebody_else_ended_is_said_to_have_ended_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], seconds: float | None, told: str
+) -> None:
+    router = MemoryRouter()
+    box, asks = router.open(), router.open()
+    monkeypatch.setattr(recording, "join", lambda _: asks)
+    monkeypatch.setattr(recording, "stop_on_signals", threading.Event)
+
+    def end() -> None:
+        record_and_die(box)
+        box.publish(topics.health("recorder"), said("", 0.0))
+
+    thread = threading.Thread(target=end)
+    thread.start()
+    recording.record(SITE, tmp_path, "", seconds)
+    thread.join()
+    box.close()
+    assert capsys.readouterr().out.endswith(f"{LESSON}.mcap, {told}")
 
 
 @pytest.mark.timeout(20)
