@@ -93,40 +93,47 @@ class FusionLoop:
         self._searching: dict[str, bool] = {}
         self._found = False
         self._cameras: dict[str, tuple[int, CameraHealth]] = {}
+        self._ticks = 0
         self._controls = 0
         self._reporter = HealthReporter(context.name, context.bus, context.resources)
         self._began_ns = time.monotonic_ns()
         self._second = _Second(self._began_ns)
 
     def run(self) -> None:
-        """Take observations as they come and tick at the live rate; ticks that were missed are not made up for."""
+        """Take observations as they come and tick at the live rate.
+
+        Of ticks that were missed only the newest is made up for, and before anything is taken in: seen from a tick that is long
+        past, what came in while this process was held up would be of the future.
+        """
         self._bus.declare_alive(topics.alive(self._context.name))
         heard = (topics.ALL_HEALTH, topics.feedback(), topics.pupil_corrections(), topics.segment_request())
         subscription = self._bus.subscribe(*sorted(self._observations), *heard, keep=KEEP)
         period_ns = round(SECOND_NS / self._context.site.fusion.live_hz)
         tick_ns = time.monotonic_ns()
-        ticks = 0
         try:
             while not self._context.stop.is_set():
                 self._context.beat()
                 delivery = subscription.receive(max((tick_ns - time.monotonic_ns()) * 1e-9, 0.0))
+                now_ns = time.monotonic_ns()
+                if now_ns >= tick_ns:
+                    tick_ns += (now_ns - tick_ns) // period_ns * period_ns
+                    self._tick(tick_ns, now_ns)
+                    tick_ns += period_ns
                 if delivery is not None:
                     self._receive(delivery)
-                now_ns = time.monotonic_ns()
-                if now_ns < tick_ns:
-                    continue
-                self._step(Tick(tick_ns))
-                # A first plan would be made up: cameras that run already go on with their last one meanwhile.
-                if self._governor.started and ticks % CONTROL_EVERY_TICKS == 0:
-                    self._control(now_ns)
-                if (part := self._log.part(now_ns)) is not None:
-                    self._bus.publish(topics.fusion_log(), codec.encode(part))
-                ticks += 1
-                tick_ns += ((now_ns - tick_ns) // period_ns + 1) * period_ns
-                if now_ns - self._second.began_ns >= SECOND_NS:
-                    self._second_passed(now_ns)
         finally:
             subscription.close()
+
+    def _tick(self, tick_ns: int, now_ns: int) -> None:
+        self._step(Tick(tick_ns))
+        # A first plan would be made up: cameras that run already go on with their last one meanwhile.
+        if self._governor.started and self._ticks % CONTROL_EVERY_TICKS == 0:
+            self._control(now_ns)
+        if (part := self._log.part(now_ns)) is not None:
+            self._bus.publish(topics.fusion_log(), codec.encode(part))
+        self._ticks += 1
+        if now_ns - self._second.began_ns >= SECOND_NS:
+            self._second_passed(now_ns)
 
     def _receive(self, delivery: Delivery) -> None:
         now_ns = time.monotonic_ns()
