@@ -25,6 +25,8 @@ from services.support.teaching_files import folder_of_own, own_folder
 SHIPPED: Final = "shipped"
 AT_NEXT_START: Final = "the box goes by it from its next start on"
 _PIPE_WIDTH: Final = 200
+_MOST_DIGITS: Final = 255
+"""A version's number is part of its file's name, which is no longer."""
 
 
 @dataclass(frozen=True)
@@ -152,7 +154,7 @@ def _chosen(own: OwnStandards, action: str, version: str) -> int | str:
     shipped = own.shipped(action)
     if version == SHIPPED and shipped is not None:
         return SHIPPED
-    if version.isascii() and version.isdigit():
+    if version.isascii() and version.isdigit() and len(version) <= _MOST_DIGITS:
         number = int(version)
         if number == _counting(own, action) or number in {one.number for one in own.kept(action)}:
             return number

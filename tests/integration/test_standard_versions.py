@@ -228,3 +228,10 @@ def test_one_that_was_copied_to_the_versions_is_listed_with_the_number_of_its_na
         (2, "a"),
         (1, shipped().standards["squat"].origin),
     ]
+
+
+@pytest.mark.parametrize("version", ["9" * 5000, "0" * 5000, "\u0662", "-1"])
+def test_a_number_that_no_standard_has_is_refused_with_those_that_there_are(tmp_path: Path, version: str) -> None:
+    put(tmp_path, "by a pupil")
+    with pytest.raises(UserError, match=f"^'squat' has no version '{version}'; there are 2, shipped$"):
+        restore("squat", version, tmp_path, None)
