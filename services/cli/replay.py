@@ -1,7 +1,6 @@
 """`kinebox replay`: a box that plays a lesson into the page, with what the lesson itself says of its site and calibration."""
 
 import socket
-import tempfile
 from pathlib import Path
 
 import msgspec
@@ -11,6 +10,7 @@ from models.config.site import BusConfig, EvaluationConfig, Site, TabletConfig, 
 from models.errors import UserError
 from models.process import Playback
 from services.cli.check_lesson import what_changed
+from services.cli.replay_folder import replay_folder
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.lesson_reader import open_lesson
 from services.lesson.replay import configuration
@@ -50,10 +50,10 @@ def play(file: Path, data: Path, page: TabletConfig, speed: float, *, loop: bool
     _require_port(page)
     require_page(PAGE)
     playback = Playback(str(file.resolve()), header.title, header.started_ns + header.wall_minus_monotonic_ns, speed, loop)
-    with tempfile.TemporaryDirectory(prefix="kinebox-replay-") as folder:
-        site_file = Path(folder) / "site.toml"
+    with replay_folder() as folder:
+        site_file = folder / "site.toml"
         site_file.write_text(render(replay_site(header, page, data)))
-        (Path(folder) / _CALIBRATION).write_text(header.rig_toml)
+        (folder / _CALIBRATION).write_text(header.rig_toml)
         supervise(site_file, data, (), playback)
 
 
