@@ -107,7 +107,6 @@ def delete(lesson: str, folder: Path, *, sure: bool) -> None:
 
 def _entry(folder: Path, row: LessonRow) -> dict[str, object]:
     """A lesson as programs read it."""
-    suffix = PART_SUFFIX if row.state in {"recording", "unfinished"} else SUFFIX
     return {
         "lesson": row.lesson,
         "title": row.title,
@@ -118,5 +117,5 @@ def _entry(folder: Path, row: LessonRow) -> dict[str, object]:
         "gaps": row.gaps,
         "segments": row.segments,
         "problem": row.problem,
-        "file": readable(str(folder / f"{row.lesson}{suffix}")),
+        "file": readable(str(folder / row.file)),
     }

@@ -20,7 +20,7 @@ from services.lesson.readable_names import readable
 from services.lesson.survey import survey
 
 NAME = "index.sqlite"
-_VERSION = 3
+_VERSION = 4
 _PATIENCE_S = 1.0
 """How long to wait for another process that writes. A recorder may be the one that waits; a list that is not kept is made again."""
 
@@ -39,7 +39,8 @@ class LessonRow:
     """One lesson of the list.
 
     Attributes:
-        lesson: its name, which is the file's without suffix; `readable` if that is not UTF-8.
+        file: the name of its file; `readable` if that is not UTF-8. A finished lesson and one that was cut short may differ by no
+            more than the suffix, as when a copy was brought back beside what a crash left.
         title: what people call it.
         started_s: seconds since 1970 (UTC).
         seconds: from the first entry to the last; while it is being recorded, since its start.
@@ -52,7 +53,7 @@ class LessonRow:
             that may pass without a change of the file: it is read each time.
     """
 
-    lesson: str
+    file: str
     title: str
     started_s: _Seconds
     seconds: _Seconds
@@ -63,10 +64,15 @@ class LessonRow:
     problem: str
     changed_ns: int
 
+    @property
+    def lesson(self) -> str:
+        """Its name, which is the file's without suffix."""
+        return self.file.removesuffix(PART_SUFFIX).removesuffix(SUFFIX)
+
 
 _NAMES = tuple(field.name for field in fields(LessonRow))
 _TABLE = """lessons (
-    lesson TEXT NOT NULL PRIMARY KEY,
+    file TEXT NOT NULL PRIMARY KEY,
     title TEXT NOT NULL,
     started_s REAL NOT NULL,
     seconds REAL NOT NULL,
@@ -96,16 +102,16 @@ class LessonIndex:
         """Every lesson in the folder as its file is now, the newest first; a file that is new or was changed is read."""
         connection = self._connect()
         try:
-            known = {row.lesson: row for row in _rows(connection)}
-            found = {row.lesson: row for row in self._found(known)}
-            gone = [(lesson,) for lesson in known.keys() - found.keys()]
-            new = [astuple(row) for lesson, row in found.items() if row != known.get(lesson)]
+            known = {row.file: row for row in _rows(connection)}
+            found = {row.file: row for row in self._found(known)}
+            gone = [(file,) for file in known.keys() - found.keys()]
+            new = [astuple(row) for file, row in found.items() if row != known.get(file)]
             if gone or new:
                 self._write(connection, gone, new)
         finally:
             if connection is not self._memory:
                 connection.close()
-        return sorted(found.values(), key=lambda row: (row.started_s, row.lesson), reverse=True)
+        return sorted(found.values(), key=lambda row: (row.started_s, row.file), reverse=True)
 
     def note(self, writer: LessonWriter, path: Path) -> None:
         """A lesson was finished: list it without reading its file. If that fails, the next list reads the file."""
@@ -116,7 +122,7 @@ class LessonIndex:
             return
         header = writer.header
         row = LessonRow(
-            lesson=name_of(path),
+            file=path.name,
             title=header.title,
             started_s=header.started_s,
             seconds=writer.recorded_s,
@@ -137,7 +143,7 @@ class LessonIndex:
     def _write(self, connection: sqlite3.Connection, gone: list[tuple[str]], new: list[tuple[object, ...]]) -> None:
         try:
             with connection:
-                connection.executemany("DELETE FROM lessons WHERE lesson = ?", gone)
+                connection.executemany("DELETE FROM lessons WHERE file = ?", gone)
                 connection.executemany(_REPLACE, new)
         except sqlite3.OperationalError as error:
             self._cannot_write(error)
@@ -146,17 +152,17 @@ class LessonIndex:
 
     def _found(self, known: dict[str, LessonRow]) -> Iterator[LessonRow]:
         for path in sorted(self.folder.glob(f"*{SUFFIX}")) + sorted(self.folder.glob(f"*{PART_SUFFIX}")):
-            lesson = readable(name_of(path))
+            file = readable(path.name)
             try:
                 status = path.stat()
             except FileNotFoundError:
                 continue  # Finished or removed meanwhile.
             except OSError as error:
-                yield LessonRow(lesson, "", 0.0, 0.0, 0, 0, 0, "damaged", _unreadable(path, error), _READ_AGAIN_NS)
+                yield LessonRow(file, "", 0.0, 0.0, 0, 0, 0, "damaged", _unreadable(path, error), _READ_AGAIN_NS)
                 continue
-            row, size, changed_ns = known.get(lesson), status.st_size, min(max(status.st_mtime_ns, -_LATEST_NS), _LATEST_NS)
+            row, size, changed_ns = known.get(file), status.st_size, min(max(status.st_mtime_ns, -_LATEST_NS), _LATEST_NS)
             if row is None or _may_differ(row) or (row.bytes, row.changed_ns) != (size, changed_ns):
-                row = _read(path, lesson, size, changed_ns)
+                row = _read(path, file, size, changed_ns)
             yield row
 
     def _connect(self) -> sqlite3.Connection:
@@ -189,11 +195,6 @@ class LessonIndex:
 
     def _cannot_write(self, reason: Exception) -> None:
         log.warning("the index of lessons cannot be written", folder=str(self.folder), reason=str(reason))
-
-
-def name_of(path: Path) -> str:
-    """The name of the lesson that a file holds."""
-    return path.name.removesuffix(PART_SUFFIX).removesuffix(SUFFIX)
 
 
 def _connect(database: str) -> sqlite3.Connection:
@@ -233,7 +234,7 @@ def _text(data: bytes) -> str:
         raise sqlite3.DatabaseError("a text that is not UTF-8") from error
 
 
-def _read(path: Path, lesson: str, size: int, changed_ns: int) -> LessonRow:
+def _read(path: Path, name: str, size: int, changed_ns: int) -> LessonRow:
     title, started_s, seconds, gaps, segments, state, problem = "", changed_ns * 1e-9, 0.0, 0, 0, "finished", ""
     try:
         if path.name.endswith(PART_SUFFIX):
@@ -259,7 +260,7 @@ def _read(path: Path, lesson: str, size: int, changed_ns: int) -> LessonRow:
             changed_ns = _READ_AGAIN_NS
     except OSError as error:
         state, problem, changed_ns = "damaged", _unreadable(path, error), _READ_AGAIN_NS
-    return LessonRow(lesson, title, started_s, seconds, size, gaps, segments, state, problem, changed_ns)
+    return LessonRow(name, title, started_s, seconds, size, gaps, segments, state, problem, changed_ns)
 
 
 def _may_differ(row: LessonRow) -> bool:

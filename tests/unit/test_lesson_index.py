@@ -3,6 +3,7 @@
 import datetime as dt
 import errno
 import fcntl
+import json
 import os
 import sqlite3
 from contextlib import ExitStack
@@ -13,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from services.cli.lessons import listed
 from services.lesson import index, lesson_header
 from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX
@@ -64,6 +66,27 @@ def test_files_that_come_go_and_change_are_followed(tmp_path: Path) -> None:
     record(tmp_path, "b", parts=3)
     (row,) = lessons.lessons()
     assert (row.lesson, row.segments) == ("b", 2)
+
+
+def test_neither_of_a_finished_and_an_unfinished_lesson_of_one_name_hides_the_other(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    copy = record(tmp_path, "a").read_bytes()
+    (tmp_path / f"a{PART_SUFFIX}").write_bytes(copy[: len(copy) // 2])
+    both = {("a", "finished", str(tmp_path / "a.mcap")), ("a", "unfinished", str(tmp_path / f"a{PART_SUFFIX}"))}
+    for _ in range(2):
+        listed(tmp_path, json=True)
+        assert {(row["lesson"], row["state"], row["file"]) for row in json.loads(capsys.readouterr().out)} == both
+        monkeypatch.setattr(index, "_read", None)  # The second time both are known.
+
+
+def test_programs_are_told_the_file_of_an_unfinished_lesson_that_is_damaged(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / f"b{PART_SUFFIX}").write_bytes(b"nothing")
+    listed(tmp_path, json=True)
+    (row,) = json.loads(capsys.readouterr().out)
+    assert (row["state"], row["file"]) == ("damaged", str(tmp_path / f"b{PART_SUFFIX}"))
 
 
 def test_a_file_that_is_unchanged_is_not_read_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -198,12 +221,12 @@ def test_a_cut_of_a_lesson_is_as_long_as_what_recovery_brings_back(tmp_path: Pat
     (tmp_path / "whole.mcap").unlink()
     cut = tmp_path / f"cut{PART_SUFFIX}"
     cut.write_bytes(whole[: len(whole) // 2])
-    (listed,) = LessonIndex(tmp_path).lessons()
-    assert listed.state == "unfinished"
+    (before,) = LessonIndex(tmp_path).lessons()
+    assert before.state == "unfinished"
     assert recover(tmp_path, run_ns=0) is None
     (recovered,) = LessonIndex(tmp_path).lessons()
     assert recovered.state == "finished"
-    assert listed.seconds == pytest.approx(recovered.seconds)
+    assert before.seconds == pytest.approx(recovered.seconds)
 
 
 def test_a_file_that_cannot_be_read_is_listed_with_its_problem(tmp_path: Path) -> None:
