@@ -1,5 +1,6 @@
 """The recorder process: parts of fusion's log and people's wishes in; files, requests to fusion and health out."""
 
+import threading
 import time
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from services.lesson.disk_wait import LONGEST_S, DiskWait
 from services.lesson.folder_lock import lock
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.recorder import Recorder
-from services.lesson.recovery import recover
+from services.lesson.recovery import Left
 from services.site_file.rendering import render
 from services.support.getting_ready import getting_ready
 from services.support.health import HealthReporter, ResourceMeter
@@ -54,18 +55,24 @@ class RecorderLoop:
         self._machine = origin.machine()
         self._rejected = 0
         self._reporter = HealthReporter(context.name, context.bus, context.resources)
-        # Listening first, so that a wish that is uttered while lessons are recovered is not lost.
+        # Listening first, so that a wish that is uttered while a lesson is recovered is not lost.
         self._subscription = self._bus.subscribe(topics.fusion_log(), topics.lesson_request(), keep=KEEP)
-        with getting_ready(context.name, self._bus, "lessons that were cut short are completed"):
-            unfinished = recover(folder, context.start_ns)
+        self._left = Left(folder)
+        with getting_ready(context.name, self._bus, "the lesson that was cut short is read"):
+            unfinished = self._left.cut_short(context.start_ns)
         self._recorder = Recorder(folder, context.site.lessons, self._header, context.start_ns, unfinished)
         self._asking = Asking()
         self._told = self._recorder.health()
         self._stand_in = HealthReporter(context.name, context.bus, ResourceMeter())
 
     def run(self) -> None:
-        """Take what comes; ask fusion for its log while recording; once a second, say how things are."""
+        """Take what comes; ask fusion for its log while recording; once a second, say how things are.
+
+        Beside that, lessons of other runs are completed: nobody who is in the room waits for them.
+        """
         self._bus.declare_alive(topics.alive(self._context.name))
+        beside = threading.Thread(target=self._left.complete, args=(self._context.stop,), name="recovery", daemon=True)
+        beside.start()
         with DiskWait(self._disk_waits) as disk:
             try:
                 while not self._context.stop.is_set():
@@ -82,6 +89,7 @@ class RecorderLoop:
                 with disk.at_work():
                     self._recorder.close()
                 self._subscription.close()
+        beside.join()
 
     def _receive(self, delivery: Delivery) -> None:
         try:

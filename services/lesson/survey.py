@@ -1,5 +1,6 @@
 """What an unfinished or damaged lesson holds, up to where it can be read."""
 
+import threading
 from typing import BinaryIO, NamedTuple
 
 from mcap.opcode import Opcode
@@ -13,6 +14,10 @@ from services.lesson.mcap_records import CutOffError, DamageError, open_chunk, w
 
 _BEGINNING = (Opcode.HEADER, Opcode.METADATA, Opcode.SCHEMA, Opcode.CHANNEL)
 _DATA_END_BYTES = 4
+
+
+class StoppedError(Exception):
+    """Whoever wanted to know what is in a file does not any more."""
 
 
 class Survey(NamedTuple):
@@ -29,12 +34,18 @@ class Survey(NamedTuple):
     ended: bool = False
 
 
-def survey(file: BinaryIO) -> Survey:
-    """What a file with a good header holds, up to its first damage or, if there is none, its summary."""
+def survey(file: BinaryIO, stop: threading.Event | None = None) -> Survey:
+    """What a file with a good header holds, up to its first damage or, if there is none, its summary.
+
+    Raises:
+        StoppedError: `stop` was set meanwhile; hours of lesson take long to read.
+    """
     contents, decoder = Contents(), PartDecoder()
     file.seek(0)
     try:
         for place in walk(file):
+            if stop is not None and stop.is_set():
+                raise StoppedError
             if place.opcode == Opcode.DATA_END and len(place.body) == _DATA_END_BYTES:
                 return Survey(contents, "", ended=True)
             if place.opcode == Opcode.METADATA:

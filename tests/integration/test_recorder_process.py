@@ -10,6 +10,7 @@ import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 import pytest
 
@@ -25,14 +26,19 @@ from services.bus.memory import MemoryRouter
 from services.bus.zenoh_bus import open_client, open_router
 from services.fusion.config import PRESETS
 from services.lesson.index import LessonIndex
+from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_reader import LessonPart, open_lesson
 from services.lesson.process import RecorderLoop
+from services.lesson.recovery import Left
 from services.lesson.replay import compare, replay
+from services.lesson.survey import Survey, survey
 from services.site_file.rendering import render
 from services.support.health import ResourceMeter
 from tests.integration.fusion_room import RIG, SITE, Cameras, fusion
 from tests.integration.waiting import DEADLINE_S, until
 from tests.ports import free_port
+from tests.synthetic.lesson import BEGIN_NS, header
+from tests.synthetic.lesson import part as log_part
 
 pytestmark = pytest.mark.slow
 
@@ -259,14 +265,48 @@ def test_while_it_recovers_what_was_left_the_recorder_is_heard(tmp_path: Path, m
     router = MemoryRouter()
     heard = router.open().subscribe(topics.health("recorder"), keep=1)
 
-    def recover(_folder: Path, _run_ns: int) -> None:
+    def cut_short(_left: Left, _run_ns: int) -> None:
         delivery = heard.receive(DEADLINE_S)
         assert delivery is not None, "a supervisor would take this recorder for hung"
         assert read_health(delivery.topic, delivery.payload).process == "recorder"
 
-    monkeypatch.setattr("services.lesson.process.recover", recover)
+    monkeypatch.setattr(Left, "cut_short", cut_short)
     context = ProcessContext("recorder", None, SITE, RIG, tmp_path, 0, router.open(), threading.Event(), ResourceMeter())
     RecorderLoop(context, tmp_path)
+
+
+def test_a_lesson_is_recorded_while_one_of_before_is_still_being_completed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    old = LessonWriter.create(tmp_path, "old", header())
+    old.append(log_part(BEGIN_NS, 0))
+    old.close()
+    router, stop, read = MemoryRouter(), threading.Event(), threading.Event()
+    room = router.open()
+    heard = room.subscribe(topics.health("recorder"), keep=100)
+
+    def hours_of_lesson(file: BinaryIO, ends: threading.Event | None = None) -> Survey:
+        read.wait(DEADLINE_S)
+        return survey(file, ends)
+
+    def recording() -> bool:
+        room.publish(topics.lesson_request(), codec.encode(LessonRequest("start", "7b")))
+        delivery = heard.receive(0.5)
+        said = None if delivery is None else read_health(delivery.topic, delivery.payload).recorder
+        return said is not None and said.title == "7b"
+
+    monkeypatch.setattr("services.lesson.recovery.survey", hours_of_lesson)
+    context = ProcessContext("recorder", None, SITE, RIG, tmp_path, 0, router.open(), stop, ResourceMeter())
+    running = threading.Thread(target=lambda: RecorderLoop(context, tmp_path).run())
+    running.start()
+    try:
+        until(recording, "the lesson to begin")
+        assert not (tmp_path / "old.mcap").exists()
+        read.set()
+        until((tmp_path / "old.mcap").exists, "the old lesson to be completed")
+    finally:
+        read.set()
+        stop.set()
+        running.join(DEADLINE_S)
+    assert len(list(tmp_path.glob("*.mcap"))) == 2
 
 
 def test_while_the_disk_holds_up_a_write_the_recorder_says_so_once_a_second_and_then_goes_on(

@@ -3,6 +3,7 @@
 import copy
 import errno
 import os
+import threading
 from collections.abc import Iterator
 from functools import cache
 from io import BytesIO
@@ -24,9 +25,10 @@ from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import Contents, LessonWriter, mark_ended
 from services.lesson.lesson_reader import LessonPart, open_lesson
 from services.lesson.mcap_records import walk
-from services.lesson.recovery import DAMAGED_SUFFIX, recover, reopen
+from services.lesson.recovery import DAMAGED_SUFFIX, Left, reopen
 from services.lesson.survey import survey
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
+from tests.synthetic.recovery import recover
 
 PARTS = (*(part(BEGIN_NS, k) for k in range(3)), *(part(BEGIN_NS + 9 * SECOND_NS, k) for k in range(3)))
 
@@ -151,6 +153,37 @@ def test_at_the_start_every_lesson_that_was_left_is_finished_but_the_one_of_this
     ]
     with open_lesson(tmp_path / f"cut{SUFFIX}") as lesson:
         assert as_logged(list(lesson.parts())) == list(PARTS[:2])
+
+
+def test_the_lesson_that_goes_on_waits_for_no_other_to_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, run_ns in (("a-of-before", 1), ("b-of-this-run", 2), ("c-of-before", 1)):
+        writer = LessonWriter.create(tmp_path, name, header(run_ns=run_ns))
+        writer.append(PARTS[0])
+        writer.close()
+    read: list[Path] = []
+
+    def watched(path: Path, stop: threading.Event | None = None) -> LessonWriter:
+        read.append(path)
+        return reopen(path, stop)
+
+    monkeypatch.setattr("services.lesson.recovery.reopen", watched)
+    goes_on = Left(tmp_path).cut_short(run_ns=2)
+    assert goes_on is not None
+    goes_on.close()
+    assert [path.name for path in read] == [f"b-of-this-run{PART_SUFFIX}"]
+
+
+def test_a_box_that_ends_waits_for_no_lesson_of_before_and_leaves_it_as_it_was(tmp_path: Path) -> None:
+    data, stages = written()
+    left = tmp_path / f"cut{PART_SUFFIX}"
+    left.write_bytes(data[: stages[3].end + 3])
+    ends = threading.Event()
+    ends.set()
+    Left(tmp_path).complete(ends)
+    assert [(path.name, path.read_bytes()) for path in tmp_path.iterdir()] == [(left.name, data[: stages[3].end + 3])]
+    Left(tmp_path).complete(threading.Event())
+    with open_lesson(tmp_path / f"cut{SUFFIX}") as lesson:
+        assert as_logged(list(lesson.parts())) == list(PARTS[:3])
 
 
 def test_a_file_whose_summary_was_begun_was_ended_and_stays_so_until_it_is_finished(

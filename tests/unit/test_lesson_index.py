@@ -19,9 +19,10 @@ from services.lesson import index, lesson_header
 from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX
 from services.lesson.lesson_file import LessonWriter
-from services.lesson.recovery import recover, reopen
+from services.lesson.recovery import reopen
 from tests.synthetic.broken_index import break_index
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
+from tests.synthetic.recovery import recover
 
 
 def record(folder: Path, name: str, parts: int = 3, *, finish: bool = True) -> Path:

@@ -16,11 +16,11 @@ from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_reader import open_lesson
 from services.lesson.pupils import attempts_told
 from services.lesson.recorder import RETRY_NS, SILENT_NS, lesson_name
-from services.lesson.recovery import recover
 from services.lesson.told_to_stop import SUFFIX as WISH_SUFFIX
 from tests.mutations.samples import feedback
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
 from tests.synthetic.recording_room import Room
+from tests.synthetic.recovery import recover
 
 
 @pytest.fixture

@@ -12,10 +12,10 @@ from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_reader import open_lesson
 from services.lesson.recorder import RETRY_NS
-from services.lesson.recovery import recover
 from tests.synthetic.broken_index import break_index
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
 from tests.synthetic.recording_room import Room
+from tests.synthetic.recovery import recover
 
 
 @pytest.fixture
