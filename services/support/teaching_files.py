@@ -1,10 +1,11 @@
 """Reads what is taught: the files that KineBox brings, and those of the school's own that count in their place."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path, PurePath
-from typing import Final, TypeVar
+from typing import Final, Literal, NamedTuple, TypeVar
 
 import models.teaching
 from models.config.site import SCHOOL_FOLDER
@@ -21,6 +22,24 @@ STANDARD_SUFFIX: Final = ".npz"
 _SHIPPED: Final = resources.files(models.teaching)
 
 Content = TypeVar("Content")
+
+
+class TaughtFile(NamedTuple):
+    """A file of what is taught, whether it counts or not.
+
+    Attributes:
+        kind: what it holds: what is looked for and said, or how it is done well.
+        action: of which it is, by the file's name.
+        own: whether it is the school's.
+        path: where it is.
+        read: reads it, and raises UserError, which names its path, if that cannot be done.
+    """
+
+    kind: Literal["action", "standard"]
+    action: str
+    own: bool
+    path: str
+    read: Callable[[], object]
 
 
 def own_folder(data: Path, teaching: str) -> Path | None:
@@ -107,12 +126,34 @@ def load_words(data: Path, teaching: str) -> tuple[dict[str, Teaching], tuple[st
 
 def load_standards(own: Path | None) -> dict[str, Standard]:
     """How each action is done well, by its name; UserError as for `load_teachings`, or if a file has another action's name."""
-    found = _contents(_shipped_files(STANDARDS, STANDARD_SUFFIX), decode)
-    found |= _contents(_own_files(own, STANDARDS, STANDARD_SUFFIX), decode_own)
-    for name, one in found.items():
-        if one.action != name:
-            raise UserError(f"standard {name}{STANDARD_SUFFIX}: is of the action '{one.action}'; name the file after it")
+    found = _contents(_shipped_files(STANDARDS, STANDARD_SUFFIX), partial(_decode_standard, decode))
+    found |= _contents(_own_files(own, STANDARDS, STANDARD_SUFFIX), partial(_decode_standard, decode_own))
     return dict(sorted(found.items()))
+
+
+def taught_files(own: Path | None, vocabulary: Vocabulary) -> Iterator[TaughtFile]:
+    """Every file that KineBox brings, also where one of the school's own counts in its place, and every one of those.
+
+    Raises:
+        UserError: a folder cannot be read.
+    """
+    teaching = partial(decode_teaching, vocabulary=vocabulary)
+    yield from _taught("action", False, _shipped_files(ACTIONS, TEACHING_SUFFIX), teaching)
+    yield from _taught("standard", False, _shipped_files(STANDARDS, STANDARD_SUFFIX), partial(_decode_standard, decode))
+    yield from _taught("action", True, _own_files(own, ACTIONS, TEACHING_SUFFIX), teaching)
+    yield from _taught("standard", True, _own_files(own, STANDARDS, STANDARD_SUFFIX), partial(_decode_standard, decode_own))
+
+
+def _taught(
+    kind: Literal["action", "standard"], own: bool, files: Mapping[str, Traversable], decoder: Callable[[bytes, str], object]
+) -> Iterator[TaughtFile]:
+    for name, file in sorted(files.items()):
+
+        def read(file: Traversable = file) -> object:
+            # Unlike elsewhere its errors name the path, for there may be two of a name.
+            return decoder(_read(file), str(file))
+
+        yield TaughtFile(kind, PurePath(name).stem, own, str(file), read)
 
 
 def _contents(files: Mapping[str, Traversable], read: Callable[[bytes, str], Content]) -> dict[str, Content]:
@@ -142,3 +183,11 @@ def _read(file: Traversable) -> bytes:
         return file.read_bytes()
     except OSError as error:
         raise UserError(f"{file} cannot be read: {error.strerror}; correct its permissions, or remove it") from error
+
+
+def _decode_standard(decoder: Callable[[bytes, str], Standard], data: bytes, name: str) -> Standard:
+    """As the decoder; UserError, too, if the file has another action's name."""
+    one = decoder(data, name)
+    if one.action != PurePath(name).stem:
+        raise UserError(f"standard {name}: is of the action '{one.action}'; name the file after it")
+    return one

@@ -11,7 +11,8 @@ from tests.integration.doctor_troubles.machine import MACHINE
 from tests.integration.doctor_troubles.ports import PORTS
 from tests.integration.doctor_troubles.processes import PROCESSES
 from tests.integration.doctor_troubles.room import ROOM
+from tests.integration.doctor_troubles.taught import TAUGHT
 from tests.integration.doctor_troubles.trouble import Trouble
 
-TROUBLES: dict[str, Trouble] = CONFIGURATION | DATA_FOLDER | MACHINE | INSTALLATION | PORTS | PROCESSES | CAMERAS | ROOM
+TROUBLES: dict[str, Trouble] = CONFIGURATION | TAUGHT | DATA_FOLDER | MACHINE | INSTALLATION | PORTS | PROCESSES | CAMERAS | ROOM
 """By name, in the order of the document."""

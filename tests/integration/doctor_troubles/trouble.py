@@ -10,6 +10,7 @@ from edge.inspect import inspect
 from services.doctor.examine import Order, examine
 from services.doctor.finding import Examined
 from services.doctor.installation import Installation, gather_installation
+from services.evaluation.inspect import inspect as inspect_taught
 from tests.installed import DATA
 from tests.integration.box import Box
 from tests.integration.house import House, build_house
@@ -38,7 +39,7 @@ def installation_here() -> Installation:
 
 def examined(house: House | Box, **changes: object) -> Examined:
     """What the doctor finds in a house or of a running box."""
-    order = Order(house.site, house.data, (inspect,), installation=lambda _: installation_here())
+    order = Order(house.site, house.data, (inspect, inspect_taught), installation=lambda _: installation_here())
     return examine(replace(order, **changes))  # type: ignore[arg-type]
 
 
