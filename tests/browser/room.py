@@ -20,13 +20,14 @@ from models.messages.health import (
     Health,
     MachineHealth,
     RecorderHealth,
+    ReplayHealth,
     Restarts,
     SupervisorHealth,
 )
 from models.messages.motion import CameraUse, JointState, Motion
 from models.messages.pupil import NOBODY, PupilCorrections, PupilTurn
 from models.messages.trouble import Trouble
-from models.process import Bus, Delivery, ProcessContext, Resources
+from models.process import Bus, Delivery, Playback, ProcessContext, Resources
 from models.skeleton import coco
 from services.bus.memory import MemoryBus, MemoryRouter
 from services.evaluation.memory import Memory
@@ -62,6 +63,7 @@ class Scene:
         evaluating: what the evaluation sees the pupil do; None while there is none.
         recorded_s: length of the lesson that is being recorded; None while none is.
         recorder: whether the recorder says so; it may be hung, or dead, and go on later.
+        replayed_s: how far the player is in a lesson that is played.
     """
 
     speed: float = 1.0
@@ -77,6 +79,7 @@ class Scene:
     evaluating: Literal["waiting", "moving", "unknown"] | None = "waiting"
     recorded_s: float | None = None
     recorder: bool = True
+    replayed_s: float = 0.0
 
 
 _OF_ATTEMPTS = (topics.feedback(), topics.attempts_begin(), topics.feedback_request(), topics.pupil_corrections())
@@ -96,13 +99,20 @@ class _Lesson:
 
 
 class Room:
-    """Bus, publishers and server of one synthetic room; `page` is where it is to be seen."""
+    """Bus, publishers and server of one synthetic room; `page` is where it is to be seen.
 
-    def __init__(self, port: int | None = None, person: Person | None = None) -> None:
+    Args:
+        port: of the page; None for one that is free.
+        person: who is in the room.
+        playback: the lesson that is played in the place of a room, if one is.
+    """
+
+    def __init__(self, port: int | None = None, person: Person | None = None, playback: Playback | None = None) -> None:
         self.scene = Scene()
         self.played: Scene | None = None
         """The scene that was played last."""
         self.port = port or free_port()
+        self.playback = playback
         self.person = person or Person(height_m=1.6, radius_m=0.7)
         self._router = MemoryRouter()
         self._fusion = self._router.open()
@@ -141,7 +151,7 @@ class Room:
 
     def start_server(self) -> None:
         """Have the tablet process listen."""
-        self._server = _Server(self._router, self.port)
+        self._server = _Server(self._router, self.port, self.playback)
 
     def stop_server(self) -> None:
         """End the tablet process, as when its box loses power."""
@@ -294,6 +304,9 @@ class Room:
         recorder = RecorderHealth("", "", 0.0, 0, 0) if lesson is None else lesson.said(scene.recorded_s or 0.0)
         if scene.recorder:
             self._say(self._fusion, Health("recorder", 98, now_ns, "ok", (), 0.01, 60.0, recorder=recorder))
+        if self.playback is not None:
+            played = ReplayHealth(scene.replayed_s, 60.0, 1.0)
+            self._say(self._fusion, Health("replay", 96, now_ns, "ok", (), 0.2, 180.0, replay=played))
         if "fusion" not in scene.given_up:
             self._say(
                 self._fusion,
@@ -322,10 +335,10 @@ def tablet_context(bus: Bus, port: int, stop: threading.Event) -> ProcessContext
 class _Server:
     """The tablet process in a thread of its own."""
 
-    def __init__(self, router: MemoryRouter, port: int) -> None:
+    def __init__(self, router: MemoryRouter, port: int, playback: Playback | None) -> None:
         self._bus = router.open()
         self._stop = threading.Event()
-        context = tablet_context(self._bus, port, self._stop)
+        context = replace(tablet_context(self._bus, port, self._stop), playback=playback)
         self._thread = threading.Thread(target=process.main, args=(context,), name="tablet-server", daemon=True)
         self._thread.start()
         _wait_until_joined(router, self._thread)

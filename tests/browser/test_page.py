@@ -12,6 +12,7 @@ from playwright.sync_api import Page, expect
 from models.arrays import Float
 from models.messages.motion import JointState
 from models.messages.trouble import Trouble
+from models.process import Playback
 from models.skeleton import coco
 from services.tablet.page import PAGE
 from tests.browser.conftest import Tablets
@@ -343,6 +344,28 @@ def test_a_box_that_has_just_been_started_gets_ready_and_gives_no_warning(page: 
         expect(page.locator("[data-judging=off]")).to_have_count(0)
         with_scene(room, evaluating="waiting")
         expect(page.locator("[data-judging]")).to_have_count(0)
+
+
+@pytest.mark.parametrize("locale", ["en", "de", "es", "zh"])
+def test_a_lesson_that_is_to_be_played_says_that_it_waits_for_whoever_judges_it(tablets: Tablets, locale: str) -> None:
+    """It was said that the cameras look for a pupil."""
+    words = {
+        "en": ("The lesson begins in a moment", "until attempts can be judged"),
+        "de": ("Die Stunde beginnt gleich", "bis Versuche beurteilt werden können"),
+        "es": ("La clase empieza enseguida", "que se puedan evaluar los intentos"),
+        "zh": ("这节课马上开始播放", "等待评价动作的部分就绪"),
+    }[locale]
+    room = Room(playback=Playback("7b.mcap", "7b", 1_763_460_000_000_000_000, 1.0, loop=True))
+    room.scene = Scene(publishing=False, pupil="unknown", evaluating=None)
+    with room:
+        page = tablets(1280, 800, locale=locale)
+        page.goto(room.page)
+        message = page.locator(".messages")
+        for part in words:
+            expect(message).to_contain_text(part)
+        with_scene(room, evaluating="waiting", replayed_s=0.5, publishing=True, pupil="found")
+        Shown(page).wait_for_phase("live")
+        expect(message).not_to_contain_text(words[0])
 
 
 def test_a_figure_whose_frame_changes_its_size_is_never_gone(page: Page, room: Room) -> None:

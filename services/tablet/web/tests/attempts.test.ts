@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Attempt, AttemptList, AttemptMeasure, Status } from '../src/protocol/messages';
-import { judging } from '../src/state/evaluation';
+import { awaitsJudging, judging } from '../src/state/evaluation';
 import { gauge } from '../src/state/gauge';
 import { ageMin, Lesson } from '../src/state/lesson.svelte';
 
@@ -190,6 +190,18 @@ describe('what judges attempts', () => {
   it('is no failure while it gets ready', () => {
     expect([said('starting'), unheard('starting')].map(judging)).toEqual(['starting', 'starting']);
     expect(judging(unheard('unknown'))).toBe('off');
+  });
+
+  it('is waited for by a lesson that is played, until the lesson begins without it', () => {
+    const played = (position_s: number | null, judge: Said): boolean =>
+      awaitsJudging({ ...judge, replay: { title: '7b', began_ms: 0, speed: 1, position_s, length_s: 60 } });
+    expect([unheard('starting'), unheard('unknown'), said('ok')].map((judge) => played(0, judge))).toEqual([
+      true,
+      true,
+      false,
+    ]);
+    expect([played(null, unheard('starting')), played(0.1, unheard('unknown'))]).toEqual([false, false]);
+    expect(awaitsJudging({ ...unheard('starting'), replay: null })).toBe(false);
   });
 });
 

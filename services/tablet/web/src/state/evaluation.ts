@@ -10,3 +10,8 @@ export function judging(status: Pick<Status, 'processes' | 'evaluation'>): Judgi
   if (state === 'ok' || state === 'degraded') return 'on';
   return state === 'starting' || status.evaluation.state === 'starting' ? 'starting' : 'off';
 }
+
+/** A lesson is to be played and has not begun: it waits for what judges attempts, at most half a minute. */
+export function awaitsJudging(status: Pick<Status, 'processes' | 'evaluation' | 'replay'>): boolean {
+  return status.replay?.position_s === 0 && judging(status) !== 'on';
+}

@@ -58,6 +58,7 @@ export const de: Words = {
   side: 'Rückmeldung und Zustand des Raums',
   phases,
   gettingReady: { title: 'Die Kameras machen sich bereit', words: 'Einen Moment.' },
+  lessonWaits: { title: 'Die Stunde beginnt gleich', words: 'Sie wartet, bis Versuche beurteilt werden können.' },
   late: {
     box: {
       title: 'Die Box ist ausgelastet',

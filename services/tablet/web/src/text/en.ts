@@ -112,6 +112,8 @@ export const en = {
   side: 'Feedback and state of the room',
   phases,
   gettingReady: { title: 'Cameras are getting ready', words: 'One moment.' },
+  /** Of a lesson that is played. */
+  lessonWaits: { title: 'The lesson begins in a moment', words: 'It waits until attempts can be judged.' },
   late,
   staleFor: (s: number | null): string => (s ? `No new movement for ${seconds(s)}` : phases.stale.title),
 

@@ -59,6 +59,7 @@ export const es: Words = {
   side: 'Comentarios y estado de la sala',
   phases,
   gettingReady: { title: 'Las cámaras se están preparando', words: 'Un momento.' },
+  lessonWaits: { title: 'La clase empieza enseguida', words: 'Espera a que se puedan evaluar los intentos.' },
   late: {
     box: {
       title: 'La caja está ocupada',

@@ -31,6 +31,7 @@ export const zh: Words = {
   side: '反馈与现场状态',
   phases,
   gettingReady: { title: '摄像机正在准备', words: '请稍候。' },
+  lessonWaits: { title: '这节课马上开始播放', words: '正在等待评价动作的部分就绪。' },
   late: {
     box: { title: '主机繁忙', words: '任务太多，画面到得太晚，无法显示。' },
     tablet: { title: '这台平板繁忙', words: '任务太多，无法及时显示画面。请关闭其他程序。' },
