@@ -1,5 +1,6 @@
 """What fits on the screens that teachers have, in every language. Letters are wide where these tests run."""
 
+import msgspec
 import pytest
 from playwright.sync_api import Page, Route, expect
 
@@ -66,6 +67,18 @@ CODES = """code => {
     return { found, covered };
 }"""
 """Where a code stands on the page, and how well it can be read there."""
+
+LEAVES = """() => {
+    const column = document.querySelector('.asked').getBoundingClientRect();
+    const said = '.card, .card .what, .card .what span, .card .who, .card .score, .card .score i, .card p, .measures > li';
+    const leaves = (e) => {
+        const own = e.getBoundingClientRect();
+        const wide = e.clientWidth > 0 && e.scrollWidth > e.clientWidth + 1; // a line of words has no width of its own
+        return wide || own.left < column.left - 1 || own.right > column.right + 1;
+    };
+    return [...document.querySelectorAll(said)].filter(leaves).map((e) => `${e.className}: ${e.textContent.trim()}`);
+}"""
+"""What is said of an attempt and is wider than its place or the column."""
 
 
 SPEAK = """code => {
@@ -207,6 +220,17 @@ def test_a_phone_shows_what_to_correct_without_scrolling(tablets: Tablets, room:
         assert tools is not None
         assert feet["height"] > 120
         assert feet["x"] + feet["width"] <= tools["x"] + 1, "nothing lies over the figure"
+
+
+@pytest.mark.parametrize(("width", "height"), [*SCREENS, (844, 390)])
+def test_nothing_of_what_is_said_of_an_attempt_leaves_its_column(tablets: Tablets, room: Room, width: int, height: int) -> None:
+    """On a phone that was held sideways the score's error and the ends of the words were out of sight."""
+    page = tablets(width, height, REPLAY_PICTURE_MS, has_touch=True, is_mobile=width < 1000)
+    made = msgspec.structs.replace(tried(SHOT, FAULT), score=100.0, score_sigma=12.0)
+    see(open_live(page, room), room, made)
+    for language in LANGUAGES:
+        speak(page, language)
+        assert page.evaluate(LEAVES) == [], language
 
 
 def test_the_head_of_a_phone_s_page_is_one_row(tablets: Tablets, room: Room) -> None:
