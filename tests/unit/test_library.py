@@ -12,6 +12,23 @@ from models.messages.control import PoseNetwork as PoseNetworkName
 from tests.fake_networks import FakeDetector, FakePose
 
 
+class FailsOnce:
+    """Loads every network, but lightning not at the first attempt."""
+
+    def __init__(self, error: Exception) -> None:
+        self.attempts: list[PoseNetworkName] = []
+        self._error = error
+
+    def __call__(self, name: PoseNetworkName) -> FakePose:
+        self.attempts.append(name)
+        if name == "lightning" and self.attempts.count(name) == 1:
+            raise self._error
+        return FakePose(name)
+
+
+DAMAGED = UserError("network movenet-lightning is damaged")
+
+
 def test_all_networks_are_loaded_before_the_first_picture_so_that_none_is_when_the_machine_is_busy() -> None:
     loaded: list[PoseNetworkName] = []
 
@@ -26,15 +43,13 @@ def test_all_networks_are_loaded_before_the_first_picture_so_that_none_is_when_t
 
 
 def test_a_network_that_could_not_be_loaded_is_loaded_beside_the_one_that_goes_on() -> None:
-    gate, attempts = threading.Event(), []
+    gate, once = threading.Event(), FailsOnce(DAMAGED)
 
     def load(name: PoseNetworkName) -> FakePose:
-        attempts.append(name)
-        if attempts.count("lightning") == 1 and name == "lightning":
-            raise UserError("network movenet-lightning is damaged")
+        loaded = once(name)
         if name == "lightning":
             gate.wait(30)
-        return FakePose(name)
+        return loaded
 
     clock = StoppedClock()
     library = Library(load, FakeDetector, "thunder", clock)
@@ -53,7 +68,7 @@ def test_a_network_that_cannot_be_loaded_is_reported_and_the_other_goes_on() -> 
     def load(name: PoseNetworkName) -> FakePose:
         attempts.append(name)
         if name == "lightning":
-            raise UserError("network movenet-lightning is damaged")
+            raise DAMAGED
         return FakePose(name)
 
     library = Library(load, FakeDetector, "thunder")
@@ -74,16 +89,8 @@ class StoppedClock:
 
 
 def test_a_network_that_nobody_asks_for_is_tried_again_too_so_that_its_failure_is_not_reported_for_ever() -> None:
-    attempts: list[PoseNetworkName] = []
-
-    def load(name: PoseNetworkName) -> FakePose:
-        attempts.append(name)
-        if attempts.count("lightning") == 1 and name == "lightning":
-            raise UserError("network movenet-lightning is damaged")
-        return FakePose(name)
-
     clock = StoppedClock()
-    library = Library(load, FakeDetector, "thunder", clock)
+    library = Library(FailsOnce(DAMAGED), FakeDetector, "thunder", clock)
     clock.t_ns = RETRY_NS
     assert library.pose("thunder").name == "thunder"
     wait_for(lambda: library.problem == "")
@@ -91,25 +98,17 @@ def test_a_network_that_nobody_asks_for_is_tried_again_too_so_that_its_failure_i
 
 
 def test_any_failure_is_reported_in_one_line_and_tried_again_after_a_while() -> None:
-    attempts: list[PoseNetworkName] = []
-
-    def load(name: PoseNetworkName) -> FakePose:
-        attempts.append(name)
-        if attempts.count("lightning") == 1 and name == "lightning":
-            raise RuntimeError("no memory\nfor the weights")
-        return FakePose(name)
-
-    clock = StoppedClock()
+    load, clock = FailsOnce(RuntimeError("no memory\nfor the weights")), StoppedClock()
     library = Library(load, FakeDetector, "thunder", clock)
     assert library.problem.startswith("network lightning cannot be loaded (RuntimeError: no memory for the weights)")
     clock.t_ns = RETRY_NS - 1
     assert library.pose("lightning").name == "thunder"
-    assert attempts == ["thunder", "lightning"]
+    assert load.attempts == ["thunder", "lightning"]
     clock.t_ns = RETRY_NS
     library.pose("lightning")
     wait_for(lambda: library.pose("lightning").name == "lightning")
     wait_for(lambda: not loading_threads())
-    assert attempts == ["thunder", "lightning", "lightning"]
+    assert load.attempts == ["thunder", "lightning", "lightning"]
     assert library.problem == ""
 
 

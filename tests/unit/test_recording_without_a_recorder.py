@@ -2,6 +2,8 @@
 
 import threading
 import time
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import ClassVar
 
@@ -24,6 +26,28 @@ LESSON = "2026-11-23-7b"
 READ_ONLY = "lessons cannot be written: Read-only file system; correct its permissions"
 
 
+@pytest.fixture
+def box(monkeypatch: pytest.MonkeyPatch) -> Iterator[Bus]:
+    """The bus of a box that the command joins; nothing runs there but what the test begins."""
+    router = MemoryRouter()
+    asks = router.open()
+    monkeypatch.setattr(recording, "join", lambda _: asks)
+    monkeypatch.setattr(recording, "stop_on_signals", threading.Event)
+    with closing(router.open()) as opened:
+        yield opened
+
+
+@contextmanager
+def at_work(what: Callable[[Bus], None], box: Bus) -> Iterator[None]:
+    """Something that happens in the box, beside what is done in the block, and is over at its end."""
+    thread = threading.Thread(target=what, args=(box,))
+    thread.start()
+    try:
+        yield
+    finally:
+        thread.join()
+
+
 def said(lesson: str, recorded_s: float, asked_ns: int = 0) -> bytes:
     recorder = RecorderHealth(lesson, "", recorded_s, 1, 0, asked_ns=asked_ns)
     return codec.encode(Health("recorder", 1, 5, "ok", (), 0.1, 50.0, recorder=recorder))
@@ -41,20 +65,12 @@ def record_and_die(box: Bus) -> None:
 
 @pytest.mark.parametrize("seconds", [8.0, None], ids=["for 8 s", "until it is ended"])
 def test_a_box_that_died_ends_the_command_with_what_becomes_of_the_lesson(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], seconds: float | None
+    tmp_path: Path, box: Bus, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], seconds: float | None
 ) -> None:
-    router = MemoryRouter()
-    box, asks = router.open(), router.open()
-    monkeypatch.setattr(recording, "join", lambda _: asks)
     monkeypatch.setattr(recording, "GONE_AFTER_S", 0.6)
-    monkeypatch.setattr(recording, "stop_on_signals", threading.Event)
-    thread = threading.Thread(target=record_and_die, args=(box,))
-    thread.start()
     words = rf"^nothing was heard of the recorder for 0\.6 s; .* lesson {LESSON} has is kept, and finished .* 'kinebox run'$"
-    with pytest.raises(UserError, match=words):
+    with at_work(record_and_die, box), pytest.raises(UserError, match=words):
         recording.record(SITE, tmp_path, "", seconds)
-    thread.join()
-    box.close()
     assert "recorded " not in capsys.readouterr().out
 
 
@@ -132,22 +148,15 @@ class Shown(ProgressLine):
 
 
 def test_a_recorder_that_is_tried_again_is_waited_for_and_why_is_said(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, box: Bus, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    router = MemoryRouter()
-    box, asks = router.open(), router.open()
-    monkeypatch.setattr(recording, "join", lambda _: asks)
     monkeypatch.setattr(recording, "GONE_AFTER_S", 1.2)
     monkeypatch.setattr(recording, "_SILENT_S", 0.9)
     monkeypatch.setattr(recording, "_ROUND_S", 0.05)
-    monkeypatch.setattr(recording, "stop_on_signals", threading.Event)
     monkeypatch.setattr(recording, "ProgressLine", Shown)
     monkeypatch.setattr(Shown, "lines", [])
-    thread = threading.Thread(target=refuse_and_return, args=(box,))
-    thread.start()
-    recording.record(SITE, tmp_path, "", None)
-    thread.join()
-    box.close()
+    with at_work(refuse_and_return, box):
+        recording.record(SITE, tmp_path, "", None)
     assert f"recorded 0:01, 0.0 MB; {READ_ONLY}; it is tried again" in Shown.lines
     assert not [line for line in Shown.lines if "nothing is heard" in line]
     assert f"{LESSON}.mcap, 0:01" in capsys.readouterr().out
@@ -159,45 +168,30 @@ def test_a_recorder_that_is_tried_again_is_waited_for_and_why_is_said(
     ids=["for 20 s", "until it is ended"],
 )
 def test_a_lesson_that_somebody_else_ended_is_said_to_have_ended_so(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], seconds: float | None, told: str
+    tmp_path: Path, box: Bus, capsys: pytest.CaptureFixture[str], seconds: float | None, told: str
 ) -> None:
-    router = MemoryRouter()
-    box, asks = router.open(), router.open()
-    monkeypatch.setattr(recording, "join", lambda _: asks)
-    monkeypatch.setattr(recording, "stop_on_signals", threading.Event)
-
-    def end() -> None:
+    def end(box: Bus) -> None:
         record_and_die(box)
         box.publish(topics.health("recorder"), said("", 0.0))
 
-    thread = threading.Thread(target=end)
-    thread.start()
-    recording.record(SITE, tmp_path, "", seconds)
-    thread.join()
-    box.close()
+    with at_work(end, box):
+        recording.record(SITE, tmp_path, "", seconds)
     assert capsys.readouterr().out.endswith(f"{LESSON}.mcap, {told}")
+
+
+def give_up(box: Bus) -> None:
+    """A recorder that dies too often."""
+    record_and_die(box)
+    box.publish(topics.health("recorder"), instead(Trouble("given_up", "it ended 5 times; last, it ended with exit code 1")))
 
 
 @pytest.mark.timeout(20)
 def test_a_recorder_that_is_given_up_ends_the_command_at_once_with_the_reason(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, box: Bus, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    router = MemoryRouter()
-    box, asks = router.open(), router.open()
-    monkeypatch.setattr(recording, "join", lambda _: asks)
-    monkeypatch.setattr(recording, "stop_on_signals", threading.Event)
-
-    def give_up() -> None:
-        record_and_die(box)
-        box.publish(topics.health("recorder"), instead(Trouble("given_up", "it ended 5 times; last, it ended with exit code 1")))
-
-    thread = threading.Thread(target=give_up)
-    thread.start()
     words = rf"^the recorder is given up: it ended 5 times; .* code 1\. What lesson {LESSON} has is kept, .* 'kinebox run'$"
-    with pytest.raises(UserError, match=words):
+    with at_work(give_up, box), pytest.raises(UserError, match=words):
         recording.record(SITE, tmp_path, "", None)
-    thread.join()
-    box.close()
     assert "recorded " not in capsys.readouterr().out
 
 
