@@ -14,6 +14,7 @@ from models.messages.motion import JointState
 from models.messages.observation import require_array, require_count
 from models.messages.pupil import NOBODY, PupilCodeOrNone
 from models.skeleton import coco
+from models.teaching.measure import PHASES, Phase
 
 MAX_FRAMES: Final = 1200
 """Forty seconds at 30 Hz: longer than the longest standard that there may be, performed as slowly as counts as an attempt at it."""
@@ -131,6 +132,8 @@ class Feedback(msgspec.Struct, frozen=True, eq=False, omit_defaults=True):
         pupil: code of who was up when the attempt began; `NOBODY` for nobody who was named, which is left out on the wire.
         fine: nothing is to be corrected, and that is sure: every fault was judged, none is likely to have been made, and no shown
             measure is poor. False, and left out on the wire, with a cue, in doubt, and in lessons from before this was said.
+        keyframes_unseen: those around which the pupil was not seen, so that `keyframes_ns` has but where the standard has them;
+            left out on the wire where there are none, and in lessons from before this was said.
     """
 
     id: int
@@ -156,6 +159,7 @@ class Feedback(msgspec.Struct, frozen=True, eq=False, omit_defaults=True):
     standard_m: Float32
     pupil: PupilCodeOrNone = NOBODY
     fine: bool = False
+    keyframes_unseen: Annotated[tuple[Phase, ...], Meta(max_length=len(PHASES))] = ()
 
     def __post_init__(self) -> None:
         for field in ("id", "epoch", "t_published_ns", "t_first_ns", "frame_ns"):
@@ -204,6 +208,7 @@ class Feedback(msgspec.Struct, frozen=True, eq=False, omit_defaults=True):
             raise ValueError(f"keyframes_ns must follow one another, not {self.keyframes_ns}")
         if not self.t_first_ns <= self.keyframes_ns[0] < self.keyframes_ns[-1] <= last_ns:
             raise ValueError(f"keyframes_ns must be within {self.t_first_ns} and {last_ns}, not {self.keyframes_ns}")
+        _require_different("keyframes_unseen", list(self.keyframes_unseen))
 
     @property
     def _can_be_fine(self) -> bool:

@@ -14,12 +14,13 @@ from models.teaching.schema import Shown, Teaching
 from models.teaching.standard import FRAME_S, Standard
 from services.evaluation.agreement import beside_cue
 from services.evaluation.alignment import align
-from services.evaluation.attempt import FoundAttempt
+from services.evaluation.attempt import PHASES, FoundAttempt
 from services.evaluation.beside import standard_beside
 from services.evaluation.config import EvaluationConfig
 from services.evaluation.cues import choose
 from services.evaluation.deviation import Deviation, deviate
 from services.evaluation.faults import judge
+from services.evaluation.measures import keyframe
 from services.evaluation.measures.measured import Measured
 from services.evaluation.measures.reduce import evaluate
 from services.evaluation.normalise import lead_right
@@ -122,6 +123,7 @@ def appraise(
         standard_m=beside.astype(np.float32),
         pupil=pupil,
         fine=said.fine,
+        keyframes_unseen=tuple(phase for phase in PHASES if not keyframe.is_seen(reading, attempt, phase)),
     )
 
 

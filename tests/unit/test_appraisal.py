@@ -116,6 +116,16 @@ def test_by_keyframes_that_were_not_seen_nothing_is_measured_or_coloured_and_the
     assert (feedback.states == JointState.SEEN).all()
 
 
+def test_a_keyframe_around_which_nobody_saw_the_pupil_is_told() -> None:
+    track, attempt = performance("squat")
+    hidden = np.abs(track.t_s - attempt.moment_s("peak")) <= 0.15
+    states, joints_m, covariance_m2 = track.states.copy(), track.joints_m.copy(), track.covariance_m2.copy()
+    states[hidden], joints_m[hidden], covariance_m2[hidden] = JointState.UNKNOWN, np.nan, np.nan
+    assert judged(track, attempt).keyframes_unseen == ()
+    assert judged(Track(track.t_s, joints_m, covariance_m2, states), attempt).keyframes_unseen == ("peak",)
+    assert judged(track, replace(attempt, timed=False)).keyframes_unseen == ("start", "exertion", "peak", "end")
+
+
 def test_joints_that_are_known_too_badly_are_grey() -> None:
     track, attempt = performance("squat")
     vague = Track(track.t_s, track.joints_m, track.covariance_m2 + 0.25 * np.eye(3), track.states)

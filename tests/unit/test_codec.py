@@ -147,6 +147,7 @@ def examples() -> dict[str, codec.Message]:
         "activity_request": ActivityRequest("soccer_kick"),
         "activity_request_any": ActivityRequest(""),
         "feedback_fine": feedback_of_nothing_wrong(),
+        "feedback_keyframes_unseen": msgspec.structs.replace(feedback(), keyframes_unseen=("exertion", "peak")),
         "feedback_of_a_pupil": msgspec.structs.replace(feedback_of_nothing(), pupil="B12"),
         "health_evaluation_pupil": Health(
             "evaluation", 4715, 10**15, "ok", (), 0.05, 160.5,
@@ -371,6 +372,8 @@ GREEN = np.ones((3, 17), np.uint8)
         ({"keyframes_ns": (10**15, 10**15 + 2, 10**15 + 2, 10**15 + 3)}, "follow one another"),
         ({"keyframes_ns": (10**15, 10**15 + 1, 10**15 + 2, 10**15 + 90_000_000)}, "keyframes_ns must be within"),
         ({"keyframes_ns": (10**15 - 1, 10**15 + 1, 10**15 + 2, 10**15 + 3)}, "keyframes_ns must be within"),
+        ({"keyframes_unseen": ["peak", "peak"]}, "keyframes_unseen names something twice"),
+        ({"keyframes_unseen": ["top"]}, "keyframes_unseen"),
         ({"t_first_ns": 2**63 - 1}, "last frame"),
         ({"frame_ns": 0}, "frames"),
         ({"id": -1}, "id"),
@@ -441,6 +444,11 @@ def test_a_pupil_who_is_no_code_is_refused_by_the_reader(name: str, pupil: objec
     message = examples()[name]
     with pytest.raises(codec.CodecError, match="pupil"):
         codec.decode(changed(message, pupil=pupil), type(message))
+
+
+def test_lessons_from_before_unseen_keyframes_were_told_are_read_as_they_are() -> None:
+    assert b"unseen" not in codec.encode(feedback())
+    assert codec.decode(codec.encode(feedback()), Feedback).keyframes_unseen == ()
 
 
 def test_whose_an_attempt_was_is_left_out_where_nobody_was_named() -> None:

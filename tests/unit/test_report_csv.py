@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from models.messages.feedback import MeasureResult
+from models.teaching.measure import Phase
 from models.teaching.schema import Language
 from services.evaluation.report import csv_file
 from services.evaluation.report.csv_file import COLUMNS
@@ -83,6 +84,12 @@ def test_what_is_not_known_is_empty_and_never_nought() -> None:
         "pupil",
     )
     assert {row[name] for name in names} == {""}
+
+
+@pytest.mark.parametrize("unseen", [("start",), ("end",)])
+def test_the_length_of_an_attempt_whose_start_or_end_nobody_saw_is_not_known(unseen: tuple[Phase, ...]) -> None:
+    (row,) = rows(sheet(attempt(keyframes_unseen=unseen)).report)
+    assert (row["duration_s"], row["duration_s_sigma"]) == ("", "")
 
 
 def test_an_empty_cue_says_what_it_means() -> None:

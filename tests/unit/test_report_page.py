@@ -14,6 +14,7 @@ import pytest
 
 from models.messages.feedback import Colour, Judgement, MeasureResult
 from models.skeleton import coco
+from models.teaching.measure import Phase
 from models.teaching.schema import Language
 from services.evaluation.report import csv_file, curve_chart, page
 from services.evaluation.report.body import Trunk, parts_of, together
@@ -230,6 +231,18 @@ def test_the_time_since_the_start_is_as_unsure_below_the_figure_as_in_the_gradeb
     assert len(captions) == 3
     assert captions[-1] == said
     assert {caption.split("±")[1] for caption in captions} == {said.split("±")[1]}
+
+
+@pytest.mark.parametrize(
+    ("unseen", "vague"), [((), []), (("peak",), [2]), (("end", "exertion"), [1, 3]), (("start",), [0, 1, 2, 3])]
+)
+def test_when_a_keyframe_was_that_nobody_saw_is_grey_and_has_no_number(unseen: tuple[Phase, ...], vague: list[int]) -> None:
+    words = WORDS["en"]
+    source = figures(attempt(keyframes_unseen=unseen), words, "")
+    captions = [re.search(rf">{number}  [^<]*</text>(.*?)(?=<line|$)", source) for number in range(1, 5)]
+    said = [caption.group(1) if caption else "" for caption in captions]
+    assert [place for place, one in enumerate(said) if f'class="when vague" text-anchor="middle">{words.no_time}<' in one] == vague
+    assert [place for place, one in enumerate(said) if "±" in one] == sorted({1, 2, 3} - set(vague))
 
 
 def test_a_figure_is_painted_as_its_joints_are_judged() -> None:

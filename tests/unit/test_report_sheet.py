@@ -107,6 +107,11 @@ def test_times_count_from_the_lessons_begin_and_the_clock_is_the_rooms() -> None
     assert one.begun.endswith("+01:00")
 
 
+def test_keyframes_that_nobody_saw_are_named_beside_the_sigma_that_is_not_theirs() -> None:
+    document = read(json_file.encode(sheet(attempt(keyframes_unseen=("peak",)), attempt()).report))
+    assert [one["keyframes_s"]["unseen"] for one in document["attempts"]] == [["peak"], []]
+
+
 def test_attempts_are_grouped_by_pupil_who_was_not_named_comes_last() -> None:
     report = sheet((attempt(), "-"), (attempt("squat"), "P12"), (attempt(), "P07"), (attempt("squat"), "P07")).report
     assert [(one.pupil, one.attempts) for one in report.pupils] == [("P07", 2), ("P12", 1), (None, 1)]

@@ -58,6 +58,7 @@ def _column(attempt: Attempt, measure: Measure) -> str:
 
 def _about(report: Report, attempt: Attempt, comma: str) -> list[str]:
     times, begun = attempt.keyframes_s, dt.datetime.fromisoformat(attempt.begun)
+    timed = {"start", "end"}.isdisjoint(times.unseen)
     return [
         kept(report.lesson.name),
         kept(report.lesson.title),
@@ -69,8 +70,8 @@ def _about(report: Report, attempt: Attempt, comma: str) -> list[str]:
         kept(attempt.title or ""),
         kept(attempt.by),
         kept(attempt.handed),
-        _number(times.end - times.start, comma),
-        _number(times.sigma * _SQRT_2, comma),
+        _number(times.end - times.start if timed else None, comma),
+        _number(times.sigma * _SQRT_2 if timed else None, comma),
         _number(attempt.score, comma),
         _number(attempt.score_sigma, comma),
         kept("" if attempt.praise is None else attempt.praise.text or attempt.praise.point),

@@ -10,6 +10,7 @@ from msgspec import Meta
 
 from models.messages.feedback import Silence, Verdict
 from models.motions.motion import Handed
+from models.teaching.measure import Phase
 from models.teaching.schema import Language
 
 FORMAT: Final = "kinebox-report"
@@ -29,7 +30,14 @@ class Keyframes(Table, frozen=True, kw_only=True):
     exertion: Annotated[float, Meta(description="the main effort begins")]
     peak: Annotated[float, Meta(description="the decisive moment: release, highest point, hit")]
     end: Annotated[float, Meta(description="stands again, or has landed and is still")]
-    sigma: Annotated[float, Meta(description="one standard deviation of each of them")]
+    sigma: Annotated[float, Meta(description="one standard deviation of each of them that was seen")]
+    unseen: Annotated[
+        tuple[Phase, ...],
+        Meta(
+            description="those around which the pupil was not seen: their times are only where the standard has them, and no sigma "
+            "is known. Empty, too, in lessons from before this was said"
+        ),
+    ] = ()
 
 
 class Praise(Table, frozen=True, kw_only=True):

@@ -15,6 +15,7 @@ from models.arrays import Float
 from models.messages.feedback import Colour, Feedback
 from models.messages.motion import JointState
 from models.skeleton import coco
+from models.teaching.measure import PHASES
 from services.evaluation.normalise import size_m
 from services.evaluation.report import svg
 from services.evaluation.report.body import HEAD_RADIUS, TRUNK_WIDTH, Capsule, Head, Limb, Trunk, parts_of
@@ -97,9 +98,8 @@ def figures(feedback: Feedback, words: Words, label: str) -> str:
     drawn = []
     for place, (frame, moment) in enumerate(zip(frames, scene, strict=True)):
         pen = _Pen(view, scale, size, panel_mm * (place + 0.5), moment.middle_m)
-        start_s = (feedback.keyframes_ns[place] - feedback.keyframes_ns[0]) * 1e-9
         drawn.append(_panel(pen, panel_mm, feedback, frame, moment))
-        drawn.append(_caption(pen.centre_mm, place, words, "" if place == 0 else estimate(start_s, _SINCE_SIGMA_S, "s", words)))
+        drawn.append(_caption(pen.centre_mm, place, feedback, words))
     drawn.append(svg.text((WIDTH_MM, 3.0), words.seen_from[view.seen], "when", "end"))
     return svg.drawing(WIDTH_MM, HEIGHT_MM, "".join(drawn), label)
 
@@ -277,6 +277,12 @@ def _turn(first: Point, second: Point, third: Point) -> float:
     return (second[0] - first[0]) * (third[1] - first[1]) - (second[1] - first[1]) * (third[0] - first[0])
 
 
-def _caption(centre_mm: float, place: int, words: Words, when: str) -> str:
+def _caption(centre_mm: float, place: int, feedback: Feedback, words: Words) -> str:
+    """Which keyframe it is, and how long after the start; grey where either was not seen. Of the start only that it was not."""
     name = svg.text((centre_mm, _FLOOR_MM + 4.2), f"{place + 1}  {words.phases[place]}", "phase", "middle")
-    return name + (svg.text((centre_mm, _FLOOR_MM + 7.9), when, "when", "middle") if when else "")
+    seen = {PHASES[0], PHASES[place]}.isdisjoint(feedback.keyframes_unseen)
+    if seen and place == 0:
+        return name
+    since_s = (feedback.keyframes_ns[place] - feedback.keyframes_ns[0]) * 1e-9
+    when = estimate(since_s, _SINCE_SIGMA_S, "s", words) if seen else words.no_time
+    return name + svg.text((centre_mm, _FLOOR_MM + 7.9), when, "when" if seen else "when vague", "middle")

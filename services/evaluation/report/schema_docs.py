@@ -55,7 +55,8 @@ attempt:
   movement goes aside, or the difference does when something is to be corrected. How far a joint is off is shown by pattern and
   colour alike: plain is as it should be, dots a little off, stripes off; hollow with a dashed edge is not sure, what was not seen
   is not drawn. Feet and hands are never drawn, for nobody measures them. This says how surely a joint was near the standard, the
-  score how well it was done as far as it was seen: [teaching](teaching.md#how-one-thing-is-chosen);
+  score how well it was done as far as it was seen: [teaching](teaching.md#how-one-thing-is-chosen). Below stands how long after
+  the start that was; in grey that it is not known where hips or half of the joints were not seen around the keyframe or the start;
 - two angles over time, first what the cue is about, then what the tablet shows; heights, distances and speeds have no curve. The
   black line is the pupil, the dashed one the standard along the alignment. The band is as wide as a teacher's patience: half of
   the way from `good` to `fault` in the teaching file, where a cue begins; half of the range that is good, where only that is
@@ -92,7 +93,7 @@ _MEANINGS: Final = {
     "action_title": "in the report's language",
     "by": "how the action is known: `recognised` by the box, which may be wrong, or `chosen` by a person",
     "handed": "the side that leads",
-    "duration_s": "from start to end, seconds",
+    "duration_s": "from start to end, seconds; empty where either was not seen",
     "duration_s_sigma": "of that",
     "score": "0 to 100",
     "score_sigma": "of that",

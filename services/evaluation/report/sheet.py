@@ -132,7 +132,9 @@ def _attempt(facts: LessonFacts, number: int, tried: Tried, teaching: Teaching |
         by=feedback.by,
         handed=feedback.handed,
         begun=facts.wall(feedback.keyframes_ns[0]).isoformat(timespec="milliseconds"),
-        keyframes_s=document.Keyframes(start=start, exertion=exertion, peak=peak, end=end, sigma=NETWORK.moment_s),
+        keyframes_s=document.Keyframes(
+            start=start, exertion=exertion, peak=peak, end=end, sigma=NETWORK.moment_s, unseen=feedback.keyframes_unseen
+        ),
         score=_rounded(feedback.score),
         score_sigma=_rounded(feedback.score_sigma),
         praise=_praise(feedback, faults.get(feedback.praise), language),

@@ -64,6 +64,7 @@ figure.curve .name { font-size: 8pt; font-weight: 600; color: #111 }
 .lost.small { font-size: 4px }
 .phase { font-size: 3.5px; font-weight: 600 }
 .when { font-size: 2.9px; fill: #333 }
+.when.vague { fill: #6b6b6b }
 .grid { stroke: #ddd; stroke-width: .15 }
 .axis { stroke: #111; stroke-width: .2 }
 .tick { font-size: 2.5px; fill: #333 }

@@ -33,6 +33,7 @@ class Words:
         rest: the same where something was good, and too little else was seen.
         score: before a score.
         not_known: in the place of a number.
+        no_time: in the place of when a keyframe was that nobody saw.
         of_height: behind a percentage of the pupil's height.
         should_be: what is good; with {range}.
         verdicts, colours: what they mean.
@@ -70,6 +71,7 @@ class Words:
     rest: str
     score: str
     not_known: str
+    no_time: str
     of_height: str
     should_be: str
     verdicts: dict[Verdict, str]
@@ -126,6 +128,7 @@ WORDS: Final[dict[Language, Words]] = {
         rest="The rest was not seen well enough",
         score="Score",
         not_known="not known",
+        no_time="time not known",
         of_height="of height",
         should_be="good: {range}",
         verdicts=_verdicts("Good", "Nearly", "Work on it", "Not known"),
@@ -164,6 +167,7 @@ WORDS: Final[dict[Language, Words]] = {
         rest="其余部分看得不够清楚",
         score="得分",
         not_known="未知",
+        no_time="时间未知",
         of_height="身高",
         should_be="良好：{range}",
         verdicts=_verdicts("好", "接近", "要练习", "未知"),
@@ -204,6 +208,7 @@ WORDS: Final[dict[Language, Words]] = {
         rest="Der Rest war nicht gut genug zu sehen",
         score="Punkte",
         not_known="nicht bekannt",
+        no_time="Zeit nicht bekannt",
         of_height="der Größe",
         should_be="gut: {range}",
         verdicts=_verdicts("Gut", "Fast", "Daran üben", "Nicht bekannt"),
@@ -246,6 +251,7 @@ WORDS: Final[dict[Language, Words]] = {
         rest="El resto no se vio lo bastante bien",
         score="Puntos",
         not_known="desconocido",
+        no_time="tiempo desconocido",
         of_height="de estatura",
         should_be="bien: {range}",
         verdicts=_verdicts("Bien", "Casi", "A trabajar", "Desconocido"),
