@@ -24,7 +24,11 @@ _FULL: Final = 1.25
 """From this severity on a fault costs no more."""
 _UNKNOWN_SIGMA: Final = 0.3
 """What a fault that nobody could judge may have cost more or less than the others, of what it counts."""
-
+_UNCOLOURED_SIGMA: Final = 0.25
+"""The same of joints that were not judged: they may have been anywhere near those that were."""
+_JOINTS_ALIKE: Final = 0.2
+"""Correlation that is taken for the errors of two joints' parts: neighbours are wrong alike, and all are compared by the same hips
+and heading. With errors as fusion has them scores are as far off as that says, or less."""
 
 _NODES, _SHARES = hermegauss(15)
 _SHARES /= _SHARES.sum()
@@ -58,14 +62,21 @@ def score(teaching: Teaching, judgements: Sequence[Judgement], deviation: Deviat
     # What nobody judged counts as the rest does: not as if it had been good.
     counted = np.where(known, weights, 0.0) / weights[known].sum()
     good = 1 - float(np.linalg.norm(np.sqrt(counted) * _lost(severities)))
-    # What a fault costs ends at either side, so its deviation is not a slope's: it is that of the costs of what it may have been.
-    may_be = _lost(severities[:, None] + sigmas[:, None] * _NODES)
-    deviations = np.sqrt(np.maximum((may_be**2) @ _SHARES - (may_be @ _SHARES) ** 2, 0.0))
+    deviations = _deviations(_lost(severities[:, None] + sigmas[:, None] * _NODES))
     variance = float(counted @ deviations**2) + float(weights[~known].sum()) * _UNKNOWN_SIGMA**2
     near = None if deviation is None else _near(deviation)
-    if near is not None:
-        good, variance = _FAULTS_SHARE * good + (1 - _FAULTS_SHARE) * near[0], _FAULTS_SHARE**2 * variance + near[1]
+    if near is None:
+        # The joints have no part in it, and nobody knows which they would have had.
+        variance += ((1 - _FAULTS_SHARE) * _UNCOLOURED_SIGMA) ** 2
+    else:
+        good = _FAULTS_SHARE * good + (1 - _FAULTS_SHARE) * near[0]
+        variance = _FAULTS_SHARE**2 * variance + (1 - _FAULTS_SHARE) ** 2 * near[1]
     return Score(100 * min(max(good, 0.0), 1.0), 100 * math.sqrt(variance))
+
+
+def _deviations(may_be: Float) -> Float:
+    """(...) standard deviations of (..., 15) values at `_NODES`: costs end at either side, so no slope tells."""
+    return np.asarray(np.sqrt(np.maximum((may_be**2) @ _SHARES - (may_be @ _SHARES) ** 2, 0.0)))
 
 
 def _lost(severity: Float) -> Float:
@@ -74,12 +85,20 @@ def _lost(severity: Float) -> Float:
 
 
 def _near(deviation: Deviation) -> tuple[float, float] | None:
-    """How near the joints were to the standard, 0 to 1, and the variance of that part of the score."""
+    """How near the joints were to the standard, 0 to 1, and the variance of that."""
     judged = deviation.colours != Colour.GREY
     share = float(judged.mean()) if judged.size else 0.0
     if share < LEAST_COLOURED:
         return None
-    near = np.clip((RED - deviation.distance[judged]) / (RED - 1), 0.0, 1.0)
-    # Joints that were not judged may have been anywhere near those that were.
-    unknown = (1 - share) * 0.25
-    return float(near.mean()), ((1 - _FAULTS_SHARE) * unknown) ** 2
+    distance, sigma = deviation.distance[judged], deviation.sigma[judged]
+    deviations = np.zeros(judged.shape)
+    deviations[judged] = _deviations(_nearness(distance[:, None] + sigma[:, None] * _NODES))
+    # A joint is put beside its place for long: its frames are wrong alike.
+    of_joints = deviations.sum(axis=0) / np.count_nonzero(judged)
+    variance = (1 - _JOINTS_ALIKE) * float((of_joints**2).sum()) + _JOINTS_ALIKE * float(of_joints.sum()) ** 2
+    return float(_nearness(distance).mean()), variance + ((1 - share) * _UNCOLOURED_SIGMA) ** 2
+
+
+def _nearness(distance: Float) -> Float:
+    """Of joints so many limits away: 1 is within the limit, 0 from red on."""
+    return np.asarray(np.clip((RED - distance) / (RED - 1), 0.0, 1.0))

@@ -1,5 +1,7 @@
 """The score falls with faults and says nothing where too little was seen."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -7,17 +9,23 @@ from hypothesis import strategies as st
 
 from models.arrays import Float
 from models.messages.feedback import Colour, Judgement
+from models.skeleton import coco
 from models.teaching.schema import decode_teaching
-from services.evaluation.deviation import Deviation
+from services.evaluation.alignment import align
+from services.evaluation.attempt import FoundAttempt
+from services.evaluation.deviation import Deviation, deviate
 from services.evaluation.score import Score, score
+from services.evaluation.track import Track
+from tests.bench.teaching.noise import as_fused
+from tests.taught import performance, shipped
 from tests.teaching_texts import GOOD, VOCABULARY
 
 TEACHING = decode_teaching(GOOD.encode(), "squat.toml", VOCABULARY)
 
 
-def deviation(distance: Float | float, colour: Colour = Colour.GREEN) -> Deviation:
+def deviation(distance: Float | float, colour: Colour = Colour.GREEN, sigma: float = 0.1) -> Deviation:
     apart = np.broadcast_to(distance, (30, 17)).astype(float)
-    return Deviation(apart, np.full((30, 17), 0.1), np.full((30, 17), colour, np.uint8))
+    return Deviation(apart, np.full((30, 17), sigma), np.full((30, 17), colour, np.uint8))
 
 
 def scored(first: float | None, second: float | None, near: Deviation | None = None, sigma: float = 0.1) -> Score | None:
@@ -64,17 +72,72 @@ def test_too_little_is_no_score() -> None:
 
 
 def test_what_nobody_judged_makes_it_less_sure() -> None:
-    whole, part = scored(0.0, 0.0), scored(0.0, None)
+    whole, part = scored(0.0, 0.0, deviation(0.2)), scored(0.0, None, deviation(0.2))
     assert whole is not None
     assert part is not None
     assert part.sigma > whole.sigma + 10
 
 
 def test_uncertain_severities_make_an_uncertain_score() -> None:
-    sure, unsure = scored(0.8, 0.8, sigma=0.05), scored(0.8, 0.8, sigma=0.4)
+    sure, unsure = (scored(0.8, 0.8, deviation(0.2), sigma=sigma) for sigma in (0.05, 0.4))
     assert sure is not None
     assert unsure is not None
     assert unsure.sigma > 4 * sure.sigma > 0
+
+
+def sigma_of(near: Deviation | None) -> float:
+    """Of a score whose faults are known exactly."""
+    found = scored(0.0, 0.0, near, sigma=0.0)
+    assert found is not None
+    return found.sigma
+
+
+def test_joints_whose_distance_is_not_sure_make_the_score_less_sure() -> None:
+    """Three tenths of it are made of them, and their errors were in no sigma."""
+    sure, unsure = (sigma_of(deviation(1.5, Colour.YELLOW, sigma)) for sigma in (0.05, 0.5))
+    assert unsure > 4 * sure > 0
+    assert sigma_of(deviation(0.2, sigma=0.05)) == pytest.approx(0, abs=1e-6), "what is surely within the limit"
+
+
+def test_the_fewer_joints_are_judged_the_less_sure_is_the_score() -> None:
+    """Too few to count were said to be as sure as all."""
+    grey = []
+    for hidden in (0, 6, 11, 13, 17):
+        near = deviation(0.2)
+        near.colours[:, :hidden] = Colour.GREY
+        grey.append(sigma_of(near))
+    assert grey == sorted(grey)
+    assert grey[0] < grey[1] < grey[2] < grey[3]
+    assert sigma_of(None) == grey[-1]
+
+
+@pytest.mark.parametrize("action", ["squat", "badminton_clear", "star_jump", "basketball_shot"])
+def test_errors_as_fusion_has_them_move_the_score_no_further_than_its_sigma_says(action: str) -> None:
+    """Of somebody else than the standard, with limbs where they should not be; nor is the sigma much larger."""
+    track, attempt = performance(action, number=1)
+    joints = track.joints_m.copy()
+    joints[:, [coco.INDEX[f"{side}_{part}"] for side in ("left", "right") for part in ("elbow", "wrist", "knee")]] += 0.08
+    random = np.random.default_rng(3)
+    off, told = [], []
+    true = of_colours(replace(track, joints_m=joints), attempt)
+    for _ in range(12):
+        seen = of_colours(as_fused(joints, track.frame_s, random), attempt)
+        off.append(seen.points - true.points)
+        told.append(seen.sigma)
+    usual = float(np.sqrt(np.mean(np.square(off))))
+    assert usual / 2 < np.mean(told) < usual + 3.0
+
+
+def of_colours(track: Track, attempt: FoundAttempt) -> Score:
+    """The score of an attempt without a fault."""
+    teaching, standard = shipped().teachings[attempt.action], shipped().standards[attempt.action]
+    aligned = align(track, standard)
+    assert aligned is not None
+    found = score(
+        teaching, [Judgement(one.name, 0.0, 0.0) for one in teaching.fault], deviate(aligned, track, standard, teaching.tolerance)
+    )
+    assert found is not None
+    return found
 
 
 def test_grey_joints_have_no_part_in_it() -> None:
