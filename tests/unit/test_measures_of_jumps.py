@@ -1,12 +1,15 @@
 """Jumps of simulated pupils at the box's rate, against what bears and how the whole body's centre of mass moves."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
+from models.messages.motion import JointState
 from models.motions.perform import perform
 from models.motions.performance import Performance
+from models.skeleton import coco
 from models.teaching.measure import Measure
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.measures.measured import Measured
@@ -68,6 +71,41 @@ def test_chance_makes_no_jump_shorter() -> None:
 
     seen = [travel_cm(as_fused(track.joints_m, 1 / 30, np.random.default_rng(seed))) for seed in range(40)]
     assert np.mean(seen) == pytest.approx(travel_cm(track), abs=0.7)
+
+
+def with_ankles(state: JointState, variance_m2: float, from_s: float, to_s: float) -> tuple[Track, FoundAttempt]:
+    """A long jump of which the ankles are so well known in a stretch of time."""
+    track, attempt, _, _ = performed("long_jump")
+    frames = np.flatnonzero((track.t_s >= from_s) & (track.t_s <= to_s))
+    states, covariance_m2 = track.states.copy(), track.covariance_m2.copy()
+    for ankle in (coco.INDEX["left_ankle"], coco.INDEX["right_ankle"]):
+        states[frames, ankle], covariance_m2[frames, ankle] = state, variance_m2 * np.eye(3)
+    return replace(track, states=states, covariance_m2=covariance_m2), attempt
+
+
+def flown(name: str, track: Track, attempt: FoundAttempt) -> Measured:
+    return evaluate(Measure(function=name), Reading(track, "right"), attempt)
+
+
+def test_the_worse_ankles_are_known_the_less_sure_are_the_times_that_they_tell() -> None:
+    well, badly = (with_ankles(JointState.SEEN, sigma_m**2, 0.0, 60.0) for sigma_m in (0.005, 0.06))
+    for name in ("flight_time", "jump_height", "jump_height_by_time", "take_off_angle", "landing_apart"):
+        sure, unsure = flown(name, *well), flown(name, *badly)
+        assert unsure.known, name
+        assert unsure.value == pytest.approx(sure.value), name
+        assert unsure.sigma > 1.3 * sure.sigma, name
+
+
+def test_ankles_that_were_only_guessed_at_the_landing_do_not_tell_when_it_was() -> None:
+    peak_s = performed("long_jump")[1].moment_s("peak")
+    guessed = with_ankles(JointState.GUESSED, 0.01, peak_s, 60.0)
+    for name in ("flight_time", "jump_height_by_time", "landing_apart"):
+        assert measured(name, "long_jump").known, name
+        assert not flown(name, *guessed).known, name
+        assert flown(name, *guessed).why, name
+    height = flown("jump_height", *guessed)
+    assert height.known, "the take-off was seen"
+    assert height.value == pytest.approx(measured("jump_height", "long_jump").value, abs=0.1)
 
 
 def test_a_steeper_take_off_has_a_larger_angle() -> None:

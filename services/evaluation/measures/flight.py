@@ -20,7 +20,7 @@ from services.evaluation.attempt import FoundAttempt
 from services.evaluation.measures.measured import HIDDEN
 from services.evaluation.signals.catalogue import CATALOGUE
 from services.evaluation.signals.mass import COM_SOURCE
-from services.evaluation.signals.posture import Posture
+from services.evaluation.signals.posture import Posture, SideAsked
 from services.evaluation.signals.reading import Reading
 from services.evaluation.signals.series import Series
 from services.evaluation.signals.signal import Signal
@@ -45,6 +45,7 @@ _HALVES: Final = 8
 """Of a frame: a tenth of a millisecond."""
 _INSIDE: Final = 0.15
 """Share of a flight, at each of its ends, in which smoothing has rounded its parabola."""
+_SIDES: Final[tuple[SideAsked, SideAsked]] = ("left", "right")
 
 
 def _com(axis: int, body: Posture) -> Float:
@@ -75,8 +76,9 @@ class Flight:
         top_s, top_cm: highest point of the centre of mass, from the parabola.
         speed_cm_s: (2,) of the centre of mass along the floor.
         flat_cm: height of the left and the right ankle while the foot is flat.
-        sigma_s: of each of the moments.
-        seen: whether the joints were.
+        off_sigma_s, on_sigma_s: of the moments at which feet leave the floor and land, of the less sure foot; NaN where an ankle,
+            whose height tells them, was not seen then.
+        seen: whether the joints were while the body was in the air.
     """
 
     off_s: float
@@ -87,7 +89,8 @@ class Flight:
     top_cm: float
     speed_cm_s: Float
     flat_cm: tuple[float, float]
-    sigma_s: float
+    off_sigma_s: float
+    on_sigma_s: float
     seen: bool
 
     @property
@@ -104,7 +107,7 @@ class Flight:
 def flight_of(reading: Reading, attempt: FoundAttempt) -> Flight | str:
     """The flight of an attempt, or why there is none."""
     start_s, _, _, end_s = attempt.moments_s
-    ankles = (reading.of(ANKLE_CM[2], "left"), reading.of(ANKLE_CM[2], "right"))
+    ankles = [reading.of(ANKLE_CM[2], side) for side in _SIDES]
     ahead = reading.of(CATALOGUE["ankle_forward"], "both")
     within = _inside(ahead, start_s, end_s)
     both_cm = np.where(within, np.minimum(ankles[0].value, ankles[1].value), np.nan)
@@ -145,11 +148,21 @@ def _fitted(
     up_cm_s, height_cm = np.polyfit(since_s, series[2].value[inside] + fallen_cm, 1)
     speeds = np.array([np.polyfit(since_s, one.value[inside], 1)[0] for one in series[:2]])
     later_s = float(up_cm_s) / (100 * GRAVITY_M_S2)
-    ankle_cm = 100 * max(reading.model.landmark_m[15:17])
-    sigma_s = math.hypot(MOMENT_SIGMA_S, ankle_cm / max(abs(float(up_cm_s)) + 50 * GRAVITY_M_S2 * (on_s - off_s), 50.0))
+    fast_cm_s = max(abs(float(up_cm_s)) + 50 * GRAVITY_M_S2 * (on_s - off_s), 50.0)
+    off_sigma_s, on_sigma_s = (math.hypot(MOMENT_SIGMA_S, _ankles_sigma_cm(reading, feet) / fast_cm_s) for feet in (offs, ons))
     top_cm = float(height_cm) + 50 * GRAVITY_M_S2 * later_s**2
     seen = series[2].enough_seen(inside)
-    return Flight(off_s, on_s, ons, offs, middle_s + later_s, top_cm, speeds, flats, sigma_s, seen)
+    return Flight(off_s, on_s, ons, offs, middle_s + later_s, top_cm, speeds, flats, off_sigma_s, on_sigma_s, seen)
+
+
+def _ankles_sigma_cm(reading: Reading, feet_s: tuple[float, float]) -> float:
+    """Of the heights of the left and the right ankle at an instant each, the larger one; NaN where either was not seen."""
+    sigmas = []
+    for side, at_s in zip(_SIDES, feet_s, strict=True):
+        ankle = reading.of(ANKLE_CM[2], side)
+        weights = sample(ankle, at_s).weights
+        sigmas.append(math.sqrt(ankle.variance(weights)) if ankle.seen[weights != 0].all() else math.nan)
+    return float(np.max(sigmas))
 
 
 def _landing(ankle: Series, ahead: Series, top_s: float, flat_cm: float, stature_cm: float, latest_s: float) -> float:

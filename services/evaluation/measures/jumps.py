@@ -48,11 +48,11 @@ def _of_flight(measure: _Of) -> Callable[[Reading, FoundAttempt], Estimate]:
 
 
 def _height(flight: Flight) -> tuple[float, float]:
-    return flight.rise_cm, flight.up_cm_s * flight.sigma_s
+    return flight.rise_cm, flight.up_cm_s * flight.off_sigma_s
 
 
 def _time(flight: Flight) -> tuple[float, float]:
-    return flight.on_s - flight.off_s, math.sqrt(2) * flight.sigma_s
+    return flight.on_s - flight.off_s, math.hypot(flight.off_sigma_s, flight.on_sigma_s)
 
 
 def _height_by_time(flight: Flight) -> tuple[float, float]:
@@ -64,13 +64,13 @@ def _angle(flight: Flight) -> tuple[float, float]:
     along, up = float(np.hypot(*flight.speed_cm_s)), flight.up_cm_s
     fast = along**2 + up**2
     return math.degrees(math.atan2(up, along)), math.degrees(
-        along / fast * 100 * GRAVITY_M_S2 * flight.sigma_s
+        along / fast * 100 * GRAVITY_M_S2 * flight.off_sigma_s
     ) if fast else math.nan
 
 
 def _feet_apart(flight: Flight) -> tuple[float, float]:
     left_s, right_s = flight.feet_on_s
-    return abs(right_s - left_s), flight.sigma_s
+    return abs(right_s - left_s), flight.on_sigma_s
 
 
 def _peak_after_top(reading: Reading, attempt: FoundAttempt) -> Estimate:
