@@ -15,8 +15,9 @@ _OPENING: Final = """\
 What a teaching file ([how to edit them](teaching.md)) can look at. A **signal** has a value in every frame; a measure takes one
 number of it, at a keyframe (`at`) or over a stretch (`over`, `take`). A **function** gives one number of an attempt.
 
-- **Sides.** `lead` is the side that throws, hits, kicks or leads, `other` the other one, `both` their mean. Signals without a side
-  have it only to say which direction is positive. So a left-handed performance gives the same numbers as its mirror image.
+- **Sides.** `lead` is the side that throws, hits, kicks or leads, `other` the other one, `both` their mean: of angles that go round
+  the direction half way between them, the shorter way. Signals without a side have it only to say which direction is positive. So a
+  left-handed performance gives the same numbers as its mirror image.
 - **Units.** deg degrees, pct percent (of the pupil's stature where nothing else is said), cm centimetres, s seconds, m_s metres a
   second, m_s2 metres a second squared, deg_s degrees a second, 1 a plain number. Stature is estimated from thighs, shanks, trunk
   and neck; its sigma is in every percentage.

@@ -67,3 +67,37 @@ def test_a_signal_is_computed_once_under_whichever_name_its_side_has() -> None:
     assert one.of(knee, "lead") is one.of(knee, "right")
     assert one.of(knee, "other") is one.of(knee, "left")
     assert one.of(trunk, "both") is one.of(trunk, "lead")
+
+
+def both_arms(left_deg: Float, right_deg: Float) -> float:
+    """How far both upper arms are raised to the front at the peak, as a file asks for it."""
+    limbs = [
+        {
+            f"{side}_{part}": unit(np.cos(np.radians(raised)) * DOWN + np.sin(np.radians(raised)) * FRONT)
+            for side, raised in (("left", left), ("right", right))
+            for part in ("upper_arm", "forearm")
+        }
+        for left, right in zip(left_deg, right_deg, strict=True)
+    ]
+    track = known_track(np.stack([figure(one) for one in limbs]), FRAME_S, 0.006)
+    found = evaluate(
+        Measure(signal="shoulder_flexion", side="both", at="peak"), Reading(track, "right", told=Stature(1.5, 0.0)), ATTEMPT
+    )
+    assert found.known
+    return found.value
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "mean"), [(175, 185, 180), (160, 210, 185), (-160, 150, 175), (80, 100, 90), (-30, 60, 15)]
+)
+def test_the_mean_of_both_arms_is_half_way_between_them_the_shorter_way(left: float, right: float, mean: float) -> None:
+    """Arms over the head, one just in front and one just behind, hung down by their mean."""
+    value = both_arms(np.full(FRAMES, left), np.full(FRAMES, right))
+    assert (value - mean + 180) % 360 == pytest.approx(180, abs=1)
+    assert -181 < value < 181
+
+
+@pytest.mark.parametrize("turns", [-1, 1, 2])
+def test_one_arm_that_circled_before_does_not_turn_the_mean_of_both_about(turns: int) -> None:
+    circles = np.concatenate((np.linspace(0, 360 * turns, 30), np.full(30, 360 * turns + 80)))
+    assert both_arms(circles, np.full(FRAMES, 40)) == pytest.approx(60, abs=0.5)

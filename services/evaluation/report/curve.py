@@ -81,10 +81,10 @@ def curves_of(feedback: Feedback, teaching: Teaching | None) -> list[Curve]:
     pupil = Reading(whole, feedback.handed, told=stature_of(whole))
     standard = Reading(known_track(feedback.standard_m.astype(np.float64), whole.frame_s), feedback.handed, EXACT, pupil.stature)
     within = slice(feedback.frame_of(feedback.keyframes_ns[0]), feedback.frame_of(feedback.keyframes_ns[-1]) + 1)
-    start_s = (feedback.keyframes_ns[0] - feedback.t_first_ns) * 1e-9
+    start_s, end_s = ((t_ns - feedback.t_first_ns) * 1e-9 for t_ns in (feedback.keyframes_ns[0], feedback.keyframes_ns[-1]))
     found: list[Curve] = []
     for signal, side in dict.fromkeys(_worth(feedback, teaching)):
-        series, model = (reading.of(CATALOGUE[signal], side) for reading in (pupil, standard))
+        series, model = (reading.of(CATALOGUE[signal], side).about(start_s, end_s) for reading in (pupil, standard))
         (value, sigmas, known), (beside, _, _) = (_against_start(one, start_s) for one in (series, model))
         tolerance = _tolerance(signal, side, feedback, teaching)
         # Less sure than the band is wide, it would look like a fault or like none by chance alone.

@@ -57,7 +57,7 @@ class Reading:
         if key not in self._done:
             if whose == "both":
                 left, right = (self.of(signal, one) for one in ("left", "right"))
-                self._done[key] = left.plus(right, 0.5, 0.5)
+                self._done[key] = replace(left.plus(right, 0.5, 0.5), apart=right.value - left.value)
             else:
                 self._done[key] = self._compute(signal, whose)
         return self._done[key]

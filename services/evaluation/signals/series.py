@@ -35,6 +35,7 @@ class Series:
         turns: whether values that are whole turns apart are the same.
         from_start: whether the value at the start of the attempt is yet to be taken off; here it is against any other frame, and
             that one's error is in no sigma.
+        apart: (T,) of the mean of both sides, how much more the right side has; None of any other series.
     """
 
     unit: str
@@ -47,6 +48,7 @@ class Series:
     model: Uncertainty
     turns: bool = False
     from_start: bool = False
+    apart: Float | None = None
 
     def __len__(self) -> int:
         return len(self.t_s)
@@ -84,7 +86,7 @@ class Series:
         """The same angles, less the whole turns that the middle of a stretch is away from nought.
 
         An arm that circled before the attempt, or that hung, where its direction is but noise, has turns that are none of the
-        stretch's.
+        stretch's. Nor are those that lie between both arms: their mean is half way between them the shorter way.
         """
         if not self.turns:
             return self
@@ -92,8 +94,10 @@ class Series:
         sure = inside & (self.sigma <= SURE_DEG)
         if not inside.any():
             return self
-        turns = np.rint(np.median(self.value[sure if sure.any() else inside]) / 360)
-        return replace(self, value=self.value - 360 * turns) if turns else self
+        chosen = sure if sure.any() else inside
+        halves = 0.0 if self.apart is None else np.rint(np.median(self.apart[chosen]) / 360)
+        turns = np.rint(np.median(self.value[chosen] - 180 * halves) / 360)
+        return replace(self, value=self.value - 180 * halves - 360 * turns) if turns or halves else self
 
     def plus(self, other: "Series", share: float = 1.0, own_share: float = 1.0) -> "Series":
         """This times a share, plus another one of the same track times a share."""
