@@ -95,7 +95,7 @@ def appraise(
     aligned = align(led, standard) if attempt.timed else None
     deviation = None if aligned is None else deviate(aligned, led, standard, teaching.tolerance)
     beside = np.full_like(shown.joints_m, np.nan) if aligned is None else standard_beside(aligned, led, attempt.handed)
-    points = score(teaching, judgements, deviation)
+    points = score(teaching, judgements, deviation, measures)
 
     first_ns, keyframes_ns, frame_ns = _times(shown, attempt, moments)
     known = shown.states != JointState.UNKNOWN

@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.polynomial.hermite_e import hermegauss
 
-from models.arrays import Float
-from models.messages.feedback import Colour, Judgement
+from models.arrays import Bool, Float
+from models.messages.feedback import Colour, Judgement, MeasureResult, Verdict
 from models.teaching.schema import Teaching
 from services.evaluation.deviation import RED, Deviation
 
@@ -26,6 +26,8 @@ _UNKNOWN_SIGMA: Final = 0.3
 """What a fault that nobody could judge may have cost more or less than the others, of what it counts."""
 _UNCOLOURED_SIGMA: Final = 0.25
 """The same of joints that were not judged: they may have been anywhere near those that were."""
+_MOST: Final[dict[Verdict, float]] = {"good": 1.0, "fair": 0.95, "poor": 0.85, "unknown": 1.0}
+"""Beside a number that is said to be so there is no more of the points: a hundred is for what nobody would have otherwise."""
 _JOINTS_ALIKE: Final = 0.2
 """Correlation that is taken for the errors of two joints' parts: neighbours are wrong alike, and all are compared by the same hips
 and heading. With errors as fusion has them scores are as far off as that says, or less."""
@@ -43,11 +45,20 @@ class Score:
     sigma: float
 
 
-def score(teaching: Teaching, judgements: Sequence[Judgement], deviation: Deviation | None) -> Score | None:
+def score(
+    teaching: Teaching, judgements: Sequence[Judgement], deviation: Deviation | None, measures: Sequence[MeasureResult]
+) -> Score | None:
     """The score of an attempt.
 
     A fault costs by its importance and severity; the root of the sum of squares is taken over the faults, so that one grave fault
-    costs more than several slight ones. Joints that were seen count 1 within the limit, 0 from red on, evenly between.
+    costs more than several slight ones; where the opposite is a mistake, too, it costs the same. Joints that were seen count 1
+    within the limit, 0 from red on, evenly between. What a number on the page calls fair or poor leaves no full score.
+
+    Args:
+        teaching: of the action.
+        judgements: of its faults, in the same order.
+        deviation: from the standard; None if it is not known.
+        measures: that stand beside it.
 
     Returns:
         None if too little is known.
@@ -59,10 +70,11 @@ def score(teaching: Teaching, judgements: Sequence[Judgement], deviation: Deviat
         return None
     severities = np.array([one.severity or 0.0 for one in judgements])
     sigmas = np.array([one.sigma or 0.0 for one in judgements])
+    either_way = np.array([fault.either_way for fault in teaching.fault])
     # What nobody judged counts as the rest does: not as if it had been good.
     counted = np.where(known, weights, 0.0) / weights[known].sum()
-    good = 1 - float(np.linalg.norm(np.sqrt(counted) * _lost(severities)))
-    deviations = _deviations(_lost(severities[:, None] + sigmas[:, None] * _NODES))
+    good = 1 - float(np.linalg.norm(np.sqrt(counted) * _lost(severities, either_way)))
+    deviations = _deviations(_lost(severities[:, None] + sigmas[:, None] * _NODES, either_way[:, None]))
     variance = float(counted @ deviations**2) + float(weights[~known].sum()) * _UNKNOWN_SIGMA**2
     near = None if deviation is None else _near(deviation)
     if near is None:
@@ -71,7 +83,8 @@ def score(teaching: Teaching, judgements: Sequence[Judgement], deviation: Deviat
     else:
         good = _FAULTS_SHARE * good + (1 - _FAULTS_SHARE) * near[0]
         variance = _FAULTS_SHARE**2 * variance + (1 - _FAULTS_SHARE) ** 2 * near[1]
-    return Score(100 * min(max(good, 0.0), 1.0), 100 * math.sqrt(variance))
+    most = min((_MOST[one.verdict] for one in measures), default=1.0)
+    return Score(100 * min(max(good, 0.0), most), 100 * math.sqrt(variance))
 
 
 def _deviations(may_be: Float) -> Float:
@@ -79,9 +92,9 @@ def _deviations(may_be: Float) -> Float:
     return np.asarray(np.sqrt(np.maximum((may_be**2) @ _SHARES - (may_be @ _SHARES) ** 2, 0.0)))
 
 
-def _lost(severity: Float) -> Float:
+def _lost(severity: Float, either_way: Bool) -> Float:
     """What faults of these severities cost, 0 to 1."""
-    return np.clip((severity - _FREE) / (_FULL - _FREE), 0.0, 1.0)
+    return np.clip((np.where(either_way, np.abs(severity), severity) - _FREE) / (_FULL - _FREE), 0.0, 1.0)
 
 
 def _near(deviation: Deviation) -> tuple[float, float] | None:

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec import structs
 
 from models.arrays import Float
-from models.messages.feedback import Colour, Judgement
+from models.messages.feedback import Colour, Judgement, MeasureResult, Verdict
 from models.skeleton import coco
-from models.teaching.schema import decode_teaching
+from models.teaching.schema import Teaching, decode_teaching
 from services.evaluation.alignment import align
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.deviation import Deviation, deviate
@@ -28,12 +29,20 @@ def deviation(distance: Float | float, colour: Colour = Colour.GREEN, sigma: flo
     return Deviation(apart, np.full((30, 17), sigma), np.full((30, 17), colour, np.uint8))
 
 
-def scored(first: float | None, second: float | None, near: Deviation | None = None, sigma: float = 0.1) -> Score | None:
+def scored(
+    first: float | None,
+    second: float | None,
+    near: Deviation | None = None,
+    sigma: float = 0.1,
+    verdicts: tuple[Verdict, ...] = (),
+    teaching: Teaching = TEACHING,
+) -> Score | None:
     judged = [
         Judgement(fault.name, severity, None if severity is None else sigma)
-        for fault, severity in zip(TEACHING.fault, (first, second), strict=True)
+        for fault, severity in zip(teaching.fault, (first, second), strict=True)
     ]
-    return score(TEACHING, judged, near)
+    measures = [MeasureResult(f"number_{place}", 1.0, 0.1, "deg", verdict) for place, verdict in enumerate(verdicts)]
+    return score(teaching, judged, near, measures)
 
 
 def points(first: float | None, second: float | None, near: Deviation | None = None) -> float:
@@ -68,7 +77,7 @@ def test_it_never_grows_with_a_fault(one: float, other: float, second: float) ->
 def test_too_little_is_no_score() -> None:
     assert scored(None, None) is None
     assert scored(None, 0.0) is None
-    assert score(TEACHING, [Judgement(fault.name, None, None) for fault in TEACHING.fault], deviation(0.2)) is None
+    assert score(TEACHING, [Judgement(fault.name, None, None) for fault in TEACHING.fault], deviation(0.2), ()) is None
 
 
 def test_what_nobody_judged_makes_it_less_sure() -> None:
@@ -133,9 +142,8 @@ def of_colours(track: Track, attempt: FoundAttempt) -> Score:
     teaching, standard = shipped().teachings[attempt.action], shipped().standards[attempt.action]
     aligned = align(track, standard)
     assert aligned is not None
-    found = score(
-        teaching, [Judgement(one.name, 0.0, 0.0) for one in teaching.fault], deviate(aligned, track, standard, teaching.tolerance)
-    )
+    judged = [Judgement(one.name, 0.0, 0.0) for one in teaching.fault]
+    found = score(teaching, judged, deviate(aligned, track, standard, teaching.tolerance), ())
     assert found is not None
     return found
 
@@ -150,3 +158,29 @@ def test_who_is_hidden_does_not_score_better() -> None:
     assert points(2.0, None) == pytest.approx(0)
     assert points(0.35, None) == pytest.approx(points(0.35, 0.35))
     assert points(0.0, None) == pytest.approx(100)
+
+
+def test_the_opposite_of_a_fault_costs_where_it_is_a_mistake_too() -> None:
+    """Arms that came before the legs had a hundred points, and were told that this was no praise."""
+    both_ways = structs.replace(TEACHING, fault=(structs.replace(TEACHING.fault[0], either_way=True), TEACHING.fault[1]))
+    one_way, opposite, fault = (
+        scored(severity, 0.0, deviation(0.2), teaching=taught)
+        for taught, severity in ((TEACHING, -0.9), (both_ways, -0.9), (both_ways, 0.9))
+    )
+    assert one_way is not None
+    assert opposite is not None
+    assert one_way.points == pytest.approx(100)
+    assert fault is not None
+    assert (opposite.points, opposite.sigma) == pytest.approx((fault.points, fault.sigma))
+    assert opposite.points < 80
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "most"), [(("good", "fair"), 95), (("poor", "fair", "unknown"), 85), (("good", "unknown"), 100)]
+)
+def test_no_hundred_stands_beside_a_number_that_is_not_good(verdicts: tuple[Verdict, ...], most: float) -> None:
+    best, bad = (scored(severity, severity, deviation(0.2), verdicts=verdicts) for severity in (0.0, 1.0))
+    assert best is not None
+    assert bad is not None
+    assert best.points == pytest.approx(most)
+    assert bad.points == pytest.approx(points(1.0, 1.0, deviation(0.2)))
