@@ -40,11 +40,13 @@ def _mean(reading: Reading, attempt: FoundAttempt, which: int) -> Estimate:
     if len(steps) < _FEWEST_STEPS:
         return unknown("no steps at full speed were seen")
     values = np.array([step[which] for step in steps])
-    scatter = float(values.std(ddof=1)) / math.sqrt(len(values))
-    # All steps share where network and model put hips and ankles.
+    scatter = float(values.std(ddof=1))
     series = [reading.of(CATALOGUE["ankle_forward"], side) for side in _SIDES]
+    # Steps that agree better than noise lets them do so by chance.
+    noise = math.sqrt(float(np.mean([np.nanmedian((one.noise**2).sum(axis=1)) for one in series])))
+    # All steps share where network and model put hips and ankles.
     shared = np.mean([np.nanmedian((one.lasting**2).sum(axis=1) + one.stature**2) for one in series])
-    return Estimate(float(values.mean()), math.sqrt(scatter**2 + float(shared)))
+    return Estimate(float(values.mean()), math.sqrt(max(scatter, noise) ** 2 / len(values) + float(shared)))
 
 
 def _steps(reading: Reading, attempt: FoundAttempt, side: SideAsked) -> Iterator[tuple[float, float]]:
