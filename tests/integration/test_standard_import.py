@@ -160,8 +160,14 @@ def showing_nothing() -> dict[str, tuple[Exemplar, str]]:
     raised = joints + np.array((0.0, 0.0, 1.0))
     jump = np.stack([joints[0], joints[round(moments_s[2] / FRAME_S)]])
     return {
-        "nobody": (Exemplar(np.full_like(joints, np.nan), moments_s), "was not seen well enough: unknown are the whole body from"),
-        "no left knee": (without(squat, "left_knee"), "was not seen well enough: unknown are left knee from start to exertion"),
+        "nobody": (
+            Exemplar(np.full_like(joints, np.nan), moments_s),
+            "was not seen well enough: too little of the whole body from",
+        ),
+        "no left knee": (
+            without(squat, "left_knee"),
+            "was not seen well enough: too little of the left knee from start to exertion",
+        ),
         "a point": (Exemplar(np.zeros_like(joints), moments_s), "hardly moves between its keyframes"),
         "a statue": (Exemplar(np.repeat(joints[:1], len(joints), axis=0), moments_s), "hardly moves between its keyframes"),
         "in the air": (Exemplar(raised, moments_s), "does not stand on the floor at height 0"),
@@ -185,7 +191,7 @@ def test_a_standard_of_another_school_whose_exemplars_show_nothing_is_refused(tm
     squat = shipped().standards["squat"]
     file = tmp_path / "squat.npz"
     file.write_bytes(encode(replace(squat, exemplars=(without(squat, "left_knee"),))))
-    assert "unknown are left knee" in import_refused(tmp_path, file, Import("squat"))
+    assert "too little of the left knee" in import_refused(tmp_path, file, Import("squat"))
 
 
 def test_every_standard_that_ships_can_be_taken_to_another_school(tmp_path: Path) -> None:
