@@ -55,15 +55,9 @@ def kinebox(gym: Path, command: str, environment: dict[str, str]) -> "subprocess
     "command",
     [
         "--help",
-        "version",
-        "config show {site}",
         "doctor --data {data}",
-        "lessons --data {data}",
         "lessons --data {data} --json",
-        "logs --data {data}",
         "report lesson --data {data} --format csv",
-        "report lesson --data {data} --format html",
-        "standard list --data {data}",
     ],
 )
 def test_a_full_disk_behind_what_is_printed_is_one_line_and_code_2(gym: Path, command: str) -> None:
@@ -78,7 +72,7 @@ def test_code_2_tells_of_a_full_disk_also_where_no_line_can(gym: Path) -> None:
     assert ended.returncode == 2
 
 
-@pytest.mark.parametrize("command", ["lessons --data {data}", "report lesson --data {data} --format csv", "version"])
+@pytest.mark.parametrize("command", ["lessons --data {data}", "version"])
 @pytest.mark.parametrize("closed", [">&-", ">&- 2>&-"])
 def test_whoever_closes_a_stream_does_not_want_to_read_it(gym: Path, command: str, closed: str) -> None:
     shell = ["/bin/sh", "-c", f'"$@" {closed}', "sh", *words(gym, command)]
@@ -108,7 +102,7 @@ def test_letters_that_a_terminal_cannot_show_are_written_out(gym: Path, environm
     assert listed.stdout.isascii()
 
 
-@pytest.mark.parametrize("environment", [NO_UTF8, ASCII, {"PYTHONIOENCODING": "latin-1"}])
+@pytest.mark.parametrize("environment", [NO_UTF8, {"PYTHONIOENCODING": "latin-1"}])
 def test_a_list_for_programs_is_utf8_whatever_the_terminal_shows(gym: Path, environment: dict[str, str]) -> None:
     told = json.loads(kinebox(gym, "lessons --data {data} --json", environment).stdout.decode())
     assert "Würfe 7b" in {row["title"] for row in told}
