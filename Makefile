@@ -55,7 +55,7 @@ tests-of-the-whole: $(VENV)/.ready
 	$(PYTHON) -m pytest -q $(WHOLE)
 
 tests-of-parts: $(VENV)/.ready # many wait, for processes and deadlines; the order is that of tests/conftest.py
-	$(PYTHON) -m pytest -q -n 4 --dist loadfile --no-loadscope-reorder $(addprefix --ignore=,$(WHOLE))
+	$(PYTHON) -m pytest -q -n 3 --dist loadfile --no-loadscope-reorder $(addprefix --ignore=,$(WHOLE))
 
 # Each process of pytest compiles every test that it does not find compiled, for 10 s of CPU: one does it before the others begin.
 test check fast-tests: export PYTHONDONTWRITEBYTECODE :=
