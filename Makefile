@@ -43,7 +43,7 @@ run: setup ## Start KineBox on the built-in lesson (SOURCE=footage or footage2: 
 
 test: ## All tests but the four suites below: unit, property, golden, real sockets and processes, the page in Chromium
 	@$(MAKE) --no-print-directory --silent --jobs=2 $(SETUP) $(FILMS) $(DATA)/tests.ready
-	@# An open page or a running box takes a core for as long as it is there: one at a time, beside all others, which give way to it.
+	@# An open page or a running box takes a core for as long as it is there: one at a time, beside all others.
 	@$(MAKE) --no-print-directory --jobs=3 tests-of-the-whole tests-of-parts tests-of-the-page
 
 WHOLE := tests/browser tests/system
@@ -55,7 +55,7 @@ tests-of-the-whole: $(VENV)/.ready
 	$(PYTHON) -m pytest -q $(WHOLE)
 
 tests-of-parts: $(VENV)/.ready # many wait, for processes and deadlines; the order is that of tests/conftest.py
-	nice $(PYTHON) -m pytest -q -n 3 --dist loadfile --no-loadscope-reorder $(addprefix --ignore=,$(WHOLE))
+	$(PYTHON) -m pytest -q -n 3 --dist loadfile --no-loadscope-reorder $(addprefix --ignore=,$(WHOLE))
 
 # Each process of pytest compiles every test that it does not find compiled, for 10 s of CPU: one does it before the others begin.
 test check fast-tests: export PYTHONDONTWRITEBYTECODE :=
