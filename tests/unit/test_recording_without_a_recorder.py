@@ -75,50 +75,36 @@ def test_a_box_that_died_ends_the_command_with_what_becomes_of_the_lesson(
 
 
 def test_a_box_that_ended_is_said_to_be_waited_for_and_then_to_be_gone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, box: Bus, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    router = MemoryRouter()
-    box, asks = router.open(), router.open()
-    monkeypatch.setattr(recording, "join", lambda _: asks)
     monkeypatch.setattr(recording, "accepts", lambda _: False)
     monkeypatch.setattr(recording, "_SILENT_S", 0.3)
     monkeypatch.setattr(recording, "BOX_GONE_AFTER_S", 0.6)
-    monkeypatch.setattr(recording, "stop_on_signals", threading.Event)
-    thread = threading.Thread(target=record_and_die, args=(box,))
-    thread.start()
-    with pytest.raises(UserError, match=rf"^the box at tcp/.* is gone: .* lesson {LESSON} has is kept, .* 'kinebox run'$"):
+    gone = rf"^the box at tcp/.* is gone: .* lesson {LESSON} has is kept, .* 'kinebox run'$"
+    with at_work(record_and_die, box), pytest.raises(UserError, match=gone):
         recording.record(SITE, tmp_path, "", 40.0)
-    thread.join()
-    box.close()
     errors = capsys.readouterr().err
     assert errors.count("nothing is heard of the box at tcp/") == 1
     assert "it is waited for" in errors
 
 
 def test_a_box_that_is_heard_again_goes_on_with_the_lesson(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, box: Bus, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    router = MemoryRouter()
-    box, asks = router.open(), router.open()
-    monkeypatch.setattr(recording, "join", lambda _: asks)
     monkeypatch.setattr(recording, "accepts", lambda _: True)
     monkeypatch.setattr(recording, "_SILENT_S", 0.3)
     monkeypatch.setattr(recording, "BOX_GONE_AFTER_S", 0.6)
     monkeypatch.setattr(recording, "_ROUND_S", 0.05)
-    monkeypatch.setattr(recording, "stop_on_signals", threading.Event)
 
-    def hang_and_go_on() -> None:
+    def hang_and_go_on(box: Bus) -> None:
         record_and_die(box)
         time.sleep(1.0)
         box.publish(topics.health("recorder"), said(LESSON, 3.0))
         time.sleep(0.2)
         box.publish(topics.health("recorder"), said("", 0.0))
 
-    thread = threading.Thread(target=hang_and_go_on)
-    thread.start()
-    recording.record(SITE, tmp_path, "", None)
-    thread.join()
-    box.close()
+    with at_work(hang_and_go_on, box):
+        recording.record(SITE, tmp_path, "", None)
     told = capsys.readouterr()
     assert "the box is heard again" in told.err
     assert f"{LESSON}.mcap, 0:03" in told.out
