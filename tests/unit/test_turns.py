@@ -1,9 +1,13 @@
 """Angles that go round: turns that an arm made, or that noise made of it, before what is measured are none of it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from models.arrays import Float
+from models.messages.motion import JointState
+from models.skeleton import coco
 from models.teaching.measure import Measure
 from services.evaluation.attempt import FoundAttempt
 from services.evaluation.measures.reduce import evaluate
@@ -59,6 +63,30 @@ def test_a_turn_is_followed_across_what_is_unknown_and_not_across_what_says_noth
     np.testing.assert_allclose(unwrapped(degrees)[known], [170, 190, 210, 100, 170, 185])
     sure = np.array([True, True, True, False, True, True, True])
     np.testing.assert_allclose(unwrapped(degrees, sure)[known], [170, 190, -150, 100, 170, 185])
+
+
+def test_no_turn_is_followed_through_what_was_only_guessed() -> None:
+    """A guess that lies behind was a turn of the arm: after it, all was 360 degrees too much."""
+    degrees = np.array([20.0, 30.0, 150.0, -100.0, 40.0, 50.0])
+    seen = np.array([True, True, False, False, True, True])
+    np.testing.assert_allclose(unwrapped(degrees, seen=seen), [20, 30, 150, -100, 40, 50])
+    np.testing.assert_allclose(unwrapped(np.array([150.0, -170.0, -150.0, 100.0]), seen=seen[1:5]), [150, 190, 210, 100])
+
+
+def test_where_nothing_was_seen_the_turn_of_guesses_is_followed() -> None:
+    np.testing.assert_allclose(unwrapped(np.array([170.0, -170.0, -150.0]), seen=np.zeros(3, np.bool_)), [170, 190, 210])
+
+
+def test_a_guess_half_a_turn_off_changes_nothing_of_the_arm_after_it() -> None:
+    """The wrong place of an elbow that hid behind the trunk for two frames."""
+    azimuths = np.full(FRAMES, 60.0)
+    azimuths[20], azimuths[21] = 180.0, -80.0
+    right = reading(azimuths, np.full(FRAMES, 0.9))
+    states = right.track.states.copy()
+    states[20:22, coco.INDEX["right_elbow"]] = JointState.GUESSED
+    guessed = Reading(replace(right.track, states=states), "right", told=Stature(1.5, 0.0))
+    found = guessed.of(CATALOGUE["upper_arm_azimuth"], "lead").value
+    np.testing.assert_allclose(found[22:], 60, atol=1e-6)
 
 
 def test_a_signal_is_computed_once_under_whichever_name_its_side_has() -> None:

@@ -120,7 +120,9 @@ class Reading:
             # A track does not know when the attempt in it starts: until that is told, values are against the first known frame.
             whole = unwrapped(value)
             return replace(series, value=whole - first_known(whole), from_start=True)
-        return replace(series, value=unwrapped(value, series.sigma <= SURE_DEG), turns=True) if signal.turns else series
+        if signal.turns:
+            return replace(series, value=unwrapped(value, series.sigma <= SURE_DEG, series.seen), turns=True)
+        return series
 
     def _series(self, signal: Signal, value: Float, slopes: Float, used: list[int]) -> Series:
         count = len(self.track)
@@ -209,22 +211,28 @@ def rate_of_rate(values: Float, frame_s: float) -> Float:
     return out
 
 
-def unwrapped(degrees: Float, sure: Bool | None = None) -> Float:
-    """Angles without jumps of a whole turn; across what is unknown, too.
+def unwrapped(degrees: Float, sure: Bool | None = None, seen: Bool | None = None) -> Float:
+    """Angles without jumps of a whole turn; across what is unknown or was not seen, too.
 
     Args:
         degrees: (T,) within half a turn of nought; NaN is unknown.
         sure: (T,) of which frames it is known at all where they point; None for all. Through others no turn is followed: after them
             angles are within half a turn of nought again.
+        seen: (T,) which frames were; None for all. The others are but guesses, each within half a turn of what was seen last, or
+            first: a guess that lies behind is no turn of the body. Where nothing was seen, guesses are followed.
     """
     out = degrees.copy()
     known = np.flatnonzero(np.isfinite(degrees))
     if not len(known):
         return out
-    follows = np.ones(len(known) - 1, np.bool_) if sure is None else sure[known][1:] & sure[known][:-1]
-    turns = np.concatenate(([0.0], np.cumsum(-np.rint(np.diff(degrees[known]) / 360))))
-    begins = np.maximum.accumulate(np.where(np.concatenate(([False], follows)), 0, np.arange(len(known))))
-    out[known] += 360 * (turns - turns[begins])
+    followed = known if seen is None or not seen[known].any() else known[seen[known]]
+    follows = np.ones(len(followed) - 1, np.bool_) if sure is None else sure[followed][1:] & sure[followed][:-1]
+    turns = np.concatenate(([0.0], np.cumsum(-np.rint(np.diff(degrees[followed]) / 360))))
+    begins = np.maximum.accumulate(np.where(np.concatenate(([False], follows)), 0, np.arange(len(followed))))
+    out[followed] += 360 * (turns - turns[begins])
+    guessed = np.setdiff1d(known, followed)
+    beside = out[followed[np.maximum(np.searchsorted(followed, guessed) - 1, 0)]]
+    out[guessed] -= 360 * np.rint((out[guessed] - beside) / 360)
     return out
 
 
