@@ -5,10 +5,16 @@ costs 80 ms of CPU, six times at every start of the box.
 """
 
 import argparse
+import sys
 from functools import partial
 from pathlib import Path
 
 import msgspec
+
+# structlog imports rich wherever that is installed, to colour tracebacks on a terminal: 50 ms of CPU in each process of the box,
+# whose log is lines of JSON. None is how Python is told that there is no such module.
+if __name__ == "__main__":
+    sys.modules["rich"] = None  # type: ignore[assignment]
 
 from models.process import Playback
 from services.cli.process import ProcessOrder, run_process
