@@ -98,11 +98,13 @@ class LessonRequest(msgspec.Struct, frozen=True, omit_defaults=True):
         action: "start" while one is being recorded changes nothing.
         title: what people call it; at most `MAX_TITLE` characters; without meaning for "stop".
         t_ns: CLOCK_MONOTONIC when it was asked first; names the request of who wants to know whether the lesson is his.
+        lesson: to "stop" this one alone, by `RecorderHealth.lesson`; empty for whichever is being recorded.
     """
 
     action: Literal["start", "stop"]
     title: str = ""
     t_ns: int = 0
+    lesson: str = ""
 
     def __post_init__(self) -> None:
         require_count("t_ns", self.t_ns)

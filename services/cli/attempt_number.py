@@ -4,11 +4,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from models.errors import UserError
+from services.evaluation.report.document import Source
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.stretches import LessonAttempt, Stretch
 
 
-def require_attempt(numbers: Sequence[int], number: int, file: Path, without: str, *, again: bool) -> None:
+def require_attempt(numbers: Sequence[int], number: int, file: Path, without: str, source: Source, *, again: bool) -> None:
     """Raise UserError unless there is an attempt of this number.
 
     Args:
@@ -16,13 +17,15 @@ def require_attempt(numbers: Sequence[int], number: int, file: Path, without: st
         number: of the attempt.
         file: of the lesson.
         without: what to do if no attempt was found in it.
-        again: whether they are those that evaluation finds now, which may be more or fewer than on the day.
+        source: of the attempts; those that evaluation finds now may be more or fewer than on the day.
+        again: whether they were evaluated because that was asked for, and not because there are none of the day.
     """
     if not numbers:
         raise UserError(f"lesson {file} holds no attempts that were found; {without}")
     if number not in numbers:
-        otherwise = "without --again, those of the day count" if again else "with --again, those that are found anew count"
-        raise UserError(f"lesson {file} has no attempt {number}; it has {ranges(numbers)} ({otherwise})")
+        others = " (with --again, those that are found anew count)" if source == "recorded" else ""
+        others = " (without --again, those of the day count)" if again else others
+        raise UserError(f"lesson {file} has no attempt {number}; it has {ranges(numbers)}{others}")
 
 
 def attempt_in(found: Sequence[Stretch], number: int, file: Path, remedy: str) -> tuple[Stretch, LessonAttempt]:

@@ -13,6 +13,7 @@ from services.cli.duration import clock
 from services.cli.lesson_attempts import attempts_of, recorded_feedbacks
 from services.cli.progress import ProgressLine
 from services.cli.pupil_option import written
+from services.evaluation.report.document import Source
 from services.evaluation.track import Track
 from services.lesson.export.formats import files_of
 from services.lesson.export.kinds import Format
@@ -91,10 +92,13 @@ def _stretches(lesson: Lesson, data: Path, site: Path | None, progress: Progress
     def watch(t_ns: int) -> None:
         progress.show(f"read {clock(max(t_ns - lesson.header.started_ns, 0) * 1e-9)}")
 
+    source: Source = "recorded"
     if order.again or (order.attempt is not None and not feedbacks):
-        feedbacks = attempts_of(lesson, data, site, progress, again=order.again).feedbacks
+        attempts = attempts_of(lesson, data, site, progress, again=order.again)
+        feedbacks, source = attempts.feedbacks, attempts.source
     if order.attempt is not None:
-        require_attempt(range(1, len(feedbacks) + 1), order.attempt, lesson.path, "leave out --attempt", again=order.again)
+        numbers = range(1, len(feedbacks) + 1)
+        require_attempt(numbers, order.attempt, lesson.path, "leave out --attempt", source, again=order.again)
     found = stretches(lesson.parts(), frame_s, feedbacks, watch, only=order.attempt)
     if not found and order.attempt is None:
         raise UserError(f"lesson {lesson.path} holds no motion: it ended too early; export a longer one")

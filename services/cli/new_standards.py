@@ -107,9 +107,8 @@ def record(file: Path, data: Path, site: Path | None, order: Record) -> None:
     with open_lesson(file) as lesson, ProgressLine() as progress:
         lesson.require_entries()
         attempts = attempts_of(lesson, data, site, progress, again=order.again)
-        require_attempt(
-            range(1, len(attempts.feedbacks) + 1), number, file, "name a lesson with an attempt in it", again=order.again
-        )
+        numbers = range(1, len(attempts.feedbacks) + 1)
+        require_attempt(numbers, number, file, "name a lesson with an attempt in it", attempts.source, again=order.again)
         frame_s, around_s = configuration(lesson.header.preset).frame_s, AROUND_S + FRAME_S
         found = stretches(lesson.parts(), frame_s, attempts.feedbacks, only=number, around_s=around_s)
         header = lesson.header

@@ -38,8 +38,8 @@ def record(site: Site, data: Path, title: str, seconds: float | None) -> None:
         seconds: how long it shall be; None until it is ended.
 
     Raises:
-        UserError: no box or recorder is there, it cannot record, the lesson ended by itself, the recorder was given up, or
-            nothing is heard of it any more.
+        UserError: no box or recorder is there, it cannot record, the lesson ended by itself or with the box's run, the recorder was
+            given up, or nothing is heard of it any more.
     """
     require_title(title)
     stop = stop_on_signals()
@@ -53,11 +53,14 @@ def record(site: Site, data: Path, title: str, seconds: float | None) -> None:
             ended = _watch(remote, lesson, seconds, stop, site.bus.endpoint)
         except _BoxGoneError as error:
             raise UserError(f"{error}. {_left(lesson, site, data)}") from error
-        if ended is None:
-            typer.echo(_recorded(lesson, remote.stop(), site, data))
+        last = ended or remote.stop(lesson)
+        if ended is None and last is not None:
+            typer.echo(_recorded(lesson, last, site, data))
+        elif remote.is_another_run():
+            raise UserError(f"the box was started anew, and the lesson ended with its run. {_left(lesson, site, data, runs=True)}")
         else:
             early = "" if seconds is None else f" before its {clock(seconds)}"
-            typer.echo(f"{_recorded(lesson, ended, site, data)}; somebody else ended it{early}")
+            typer.echo(f"{_recorded(lesson, last, site, data)}; somebody else ended it{early}")
     finally:
         bus.close()
 
@@ -145,10 +148,12 @@ def _kept(lesson: str) -> str:
     return f"What lesson {lesson} has is kept, and finished when the box is started again with 'kinebox run'"
 
 
-def _left(lesson: str, site: Site, data: Path) -> str:
-    """What there is of the lesson of a box that is gone: one that was told to end has finished it."""
+def _left(lesson: str, site: Site, data: Path, *, runs: bool = False) -> str:
+    """What there is of the lesson of a box that is gone: one that was told to end has finished it; one that runs again is at it."""
     file = _file(lesson, site, data)
-    return f"The lesson is in {file}" if file.is_file() else _kept(lesson)
+    if file.is_file():
+        return f"The lesson is in {file}"
+    return f"What it has is being finished; 'kinebox lessons' then lists {lesson}" if runs else _kept(lesson)
 
 
 def _line(recorder: RecorderHealth | None, reason: str) -> str:

@@ -51,8 +51,9 @@ def score(
     """The score of an attempt.
 
     A fault costs by its importance and severity; the root of the sum of squares is taken over the faults, so that one grave fault
-    costs more than several slight ones; where the opposite is a mistake, too, it costs the same. Joints that were seen count 1
-    within the limit, 0 from red on, evenly between. What a number on the page calls fair or poor leaves no full score.
+    costs more than several slight ones; where the opposite is a mistake, too, it costs the same, as far as severities count it.
+    Joints that were seen count 1 within the limit, 0 from red on, evenly between. What a number on the page calls fair or poor
+    leaves no full score.
 
     Args:
         teaching: of the action.

@@ -106,7 +106,7 @@ class RecorderLoop:
         if wish.action == "start":
             self._recorder.start(wish.title, wish.t_ns)
         else:
-            self._recorder.stop()
+            self._recorder.stop(wish.lesson)
         self._second_passed()  # Who wished it is waiting to hear that it was done.
         self._ask()
 

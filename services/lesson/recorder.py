@@ -108,11 +108,16 @@ class Recorder:
         self._begin(writer, asked_ns=asked_ns)
         log.info("lesson begins", lesson=_name(writer), title=title)
 
-    def stop(self) -> None:
+    def stop(self, lesson: str = "") -> None:
         """End the lesson, if one is being recorded; in this run no automatic one begins any more.
 
         Who wishes it goes on until it is done: then nothing is unsaid about how it ended.
+
+        Args:
+            lesson: the one to end, if only this one shall be; another one goes on.
         """
+        if lesson and (self._running is None or _name(self._running.writer) != lesson):
+            return
         if self._automatic_ns is not None:
             self._automatic_ns = None
             self._note_wish()

@@ -20,6 +20,8 @@ HEARD_WITHIN_S = 15.0
 """The recorder starts last, up to five seconds after the others, and a busy machine takes as long again."""
 BOX_HEARD_WITHIN_S = 5.0
 """Health comes every second from every process; the one that routes the bus needs no longer to be connected."""
+SUPERVISOR_HEARD_WITHIN_S = 3.0
+"""It speaks every second."""
 DONE_WITHIN_S = 20.0
 """A box that starts or is busy may take as long until fusion begins anew for a lesson."""
 _REPEAT_S = 1.0
@@ -39,6 +41,7 @@ class Remote:
         """What the recorder said last."""
         self.heard_s = time.monotonic()
         """When any part of the box was heard last."""
+        self._run_ns: int | None = None  # As the supervisor said it first; None before.
 
     def start(self, title: str) -> RecorderHealth:
         """Begin a lesson; its state once it has begun.
@@ -55,18 +58,23 @@ class Remote:
             raise _taken(begun)
         return begun
 
-    def stop(self) -> RecorderHealth | None:
+    def stop(self, lesson: str = "") -> RecorderHealth | None:
         """End the lesson that is being recorded; its last state before, or None if none was.
+
+        Args:
+            lesson: the one to end, if only this one shall be: where another one is being recorded by now, that goes on.
 
         Raises:
             UserError: no recorder is heard, it does not end, or the lesson ended otherwise than it should have.
         """
         before = self._current()
-        if before.lesson:
-            self._ask(LessonRequest("stop"), lambda recorder: not recorder.lesson, "end the lesson")
+        is_meant = before.lesson != "" and before.lesson == (lesson or before.lesson)
+        if is_meant:
+            request = LessonRequest("stop", lesson=before.lesson)
+            self._ask(request, lambda recorder: recorder.lesson != before.lesson, "end the lesson")
         if self.newest is not None and refused(self.newest):
             raise UserError(self.newest.reason)
-        return before if before.lesson else None
+        return before if is_meant else None
 
     def listen(self, timeout_s: float) -> Health | None:
         """The recorder's next word; None if none came."""
@@ -81,10 +89,26 @@ class Remote:
                 continue
             self._someone = True
             self.heard_s = time.monotonic()
+            if health.supervisor is not None and self._run_ns is None:
+                self._run_ns = health.supervisor.started_ns
             if health.process == RECORDER:
                 self.newest = health
                 return health
         return None
+
+    def is_another_run(self) -> bool:
+        """Whether the box was started anew since it was heard first, by the next word of its supervisor."""
+        first_ns = self._run_ns
+        if first_ns is None:
+            return False
+        self._run_ns = None
+        return self._hear_run() not in {first_ns, None}
+
+    def _hear_run(self) -> int | None:
+        end_s = time.monotonic() + SUPERVISOR_HEARD_WITHIN_S
+        while self._run_ns is None and (remaining_s := end_s - time.monotonic()) > 0:
+            self.listen(min(remaining_s, _ROUND_S))
+        return self._run_ns
 
     def _current(self) -> RecorderHealth:
         """What the recorder does now; one that is being started again is waited for, and goes on with its lesson."""

@@ -67,6 +67,28 @@ def test_a_lesson_that_ended_as_wished_is_told_with_its_length() -> None:
     box.close()
 
 
+def test_who_ends_his_lesson_ends_none_that_was_begun_since() -> None:
+    remote, box = asked(said("8c"))
+    requests = box.subscribe(topics.lesson_request(), keep=4)
+    assert remote.stop("7b") is None
+    assert requests.receive(0.0) is None
+    box.close()
+
+
+@pytest.mark.parametrize("lesson", ["", "7b"], ids=["whichever it is", "by its name"])
+def test_the_lesson_that_was_heard_is_the_one_that_is_ended_and_no_other(lesson: str) -> None:
+    """Another one may begin while the wish is on its way."""
+    remote, box = asked(said("7b"), said("8c"))
+    requests = box.subscribe(topics.lesson_request(), keep=4)
+    last = remote.stop(lesson)
+    assert last is not None
+    assert last.lesson == "7b"
+    request = requests.receive(0.0)
+    assert request is not None
+    assert codec.decode(request.payload, LessonRequest) == LessonRequest("stop", lesson="7b")
+    box.close()
+
+
 @pytest.mark.parametrize("words", [(said("7b"), said("", ENDED)), (said("", ENDED),)], ids=["while it ends", "before"])
 def test_a_lesson_that_could_not_be_finished_is_told_with_the_reason(words: tuple[bytes, ...]) -> None:
     remote, box = asked(*words)

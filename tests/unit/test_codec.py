@@ -174,6 +174,7 @@ def examples() -> dict[str, codec.Message]:
         "segment_request": SegmentRequest(10**15),
         "lesson_request": LessonRequest("start", "7b, throwing"),
         "lesson_request_named": LessonRequest("start", "7b, throwing", 10**15),
+        "lesson_request_of_one": LessonRequest("stop", lesson="2026-11-22-7b"),
         "health_recorder_asked": Health(
             "recorder", 4712, 10**15, "ok", (), 0.01, 60.5,
             recorder=RecorderHealth("2026-11-22-7b", "7b", 0.0, 2_250, 0, 10**15 - 7, asked_ns=10**15 - 9),

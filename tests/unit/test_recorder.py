@@ -166,6 +166,16 @@ def test_a_lesson_that_the_recorders_death_cut_short_is_gone_on_with(room: Room,
         assert [item.gap for item in lesson.parts()] == gaps
 
 
+def test_a_wish_to_end_another_lesson_ends_none(automatic_room: Room) -> None:
+    automatic_room.recorder.look_after()
+    running = automatic_room.recorder.health().lesson
+    assert running
+    automatic_room.recorder.stop("2026-11-22-of-the-class-before")
+    assert automatic_room.recorder.health().lesson == running
+    automatic_room.recorder.stop(running)
+    assert automatic_room.recorder.health().lesson == ""
+
+
 def test_an_automatic_recorder_begins_by_itself_and_stops_for_good_when_told_to(automatic_room: Room) -> None:
     room = automatic_room
     room.record(parts=1)

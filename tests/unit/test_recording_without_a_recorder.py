@@ -11,7 +11,7 @@ import pytest
 
 from models.errors import UserError
 from models.messages import codec, topics
-from models.messages.health import Health, RecorderHealth
+from models.messages.health import Health, RecorderHealth, SupervisorHealth
 from models.messages.lesson import LessonRequest
 from models.messages.trouble import Trouble
 from models.process import Bus
@@ -163,6 +163,50 @@ def test_a_lesson_that_somebody_else_ended_is_said_to_have_ended_so(
     with at_work(end, box):
         recording.record(SITE, tmp_path, "", seconds)
     assert capsys.readouterr().out.endswith(f"{LESSON}.mcap, {told}")
+
+
+def run_began(started_ns: int) -> bytes:
+    """What the supervisor of a run of the box says."""
+    supervisor = SupervisorHealth("0.1.0", started_ns, ())
+    return codec.encode(Health("supervisor", 3, 7, "ok", (), 0.1, 50.0, supervisor=supervisor))
+
+
+@pytest.mark.parametrize("file", [True, False], ids=["finished", "being finished"])
+@pytest.mark.parametrize("automatic", ["", "2026-11-23-again"], ids=["no lesson", "an automatic lesson"])
+def test_a_box_that_was_started_anew_is_not_said_to_have_ended_the_lesson_as_somebody_wished(
+    tmp_path: Path, box: Bus, capsys: pytest.CaptureFixture[str], automatic: str, file: bool
+) -> None:
+    def start_anew(box: Bus) -> None:
+        record_and_die(box)
+        box.publish(topics.health("supervisor"), run_began(10))
+        box.publish(topics.health("recorder"), said(automatic, 0.0))
+        time.sleep(0.2)
+        box.publish(topics.health("supervisor"), run_began(20))
+
+    finished = tmp_path / SITE.lessons.folder / f"{LESSON}.mcap"
+    if file:
+        finished.parent.mkdir()
+        finished.touch()
+    left = rf"The lesson is in {finished}" if file else f"What it has is being finished; 'kinebox lessons' then lists {LESSON}"
+    words = rf"^the box was started anew, and the lesson ended with its run\. {left}$"
+    with at_work(start_anew, box), pytest.raises(UserError, match=words):
+        recording.record(SITE, tmp_path, "", 40.0)
+    assert "recorded " not in capsys.readouterr().out
+
+
+def test_a_lesson_that_somebody_ended_in_the_same_run_is_said_to_have_ended_so(
+    tmp_path: Path, box: Bus, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def end(box: Bus) -> None:
+        record_and_die(box)
+        box.publish(topics.health("supervisor"), run_began(10))
+        box.publish(topics.health("recorder"), said("", 0.0))
+        time.sleep(0.2)
+        box.publish(topics.health("supervisor"), run_began(10))
+
+    with at_work(end, box):
+        recording.record(SITE, tmp_path, "", None)
+    assert "somebody else ended it" in capsys.readouterr().out
 
 
 def give_up(box: Bus) -> None:

@@ -15,7 +15,7 @@ from services.evaluation.signals.catalogue import CATALOGUE
 from services.evaluation.signals.reading import Reading, unwrapped
 from services.evaluation.stature import Stature
 from services.evaluation.track import known_track
-from tests.stick_figure import DOWN, FRONT, LEFT, figure, unit
+from tests.stick_figure import DOWN, FRONT, LEFT, UP, figure, turned, unit
 
 FRAMES, FRAME_S = 60, 1 / 30
 ATTEMPT = FoundAttempt("volleyball_spike", "right", (1.2, 1.4, 1.6, 1.9))
@@ -87,6 +87,21 @@ def test_a_guess_half_a_turn_off_changes_nothing_of_the_arm_after_it() -> None:
     guessed = Reading(replace(right.track, states=states), "right", told=Stature(1.5, 0.0))
     found = guessed.of(CATALOGUE["upper_arm_azimuth"], "lead").value
     np.testing.assert_allclose(found[22:], 60, atol=1e-6)
+
+
+@pytest.mark.parametrize("wrong_deg", [179.0, 181.0])
+def test_a_trunk_that_was_guessed_the_wrong_way_round_for_a_frame_has_not_turned_about(wrong_deg: float) -> None:
+    """Left and right of shoulders and hips exchanged, in the middle of a turn to the side."""
+    degrees = np.minimum(np.arange(FRAMES) * 2.0, 60.0)
+    degrees[25] += wrong_deg
+    sides = [turned(degree, UP, LEFT) for degree in degrees]
+    track = known_track(np.stack([figure(hips=side, shoulders=side) for side in sides]), FRAME_S, 0.006)
+    states = track.states.copy()
+    states[25, [coco.INDEX[f"{side}_{part}"] for side in ("left", "right") for part in ("shoulder", "hip")]] = JointState.GUESSED
+    guessed = Reading(replace(track, states=states), "right", told=Stature(1.5, 0.0))
+    turn = Measure(signal="heading", side="lead", over=("start", "end"), take="range")
+    found = evaluate(turn, guessed, FoundAttempt("badminton_clear", "right", (0.1, 0.5, 1.5, 1.8)))
+    assert abs(found.value) == pytest.approx(54, abs=1)
 
 
 def test_a_signal_is_computed_once_under_whichever_name_its_side_has() -> None:

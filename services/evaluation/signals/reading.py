@@ -118,7 +118,7 @@ class Reading:
             return self._rate(series, signal)
         if signal.from_start:
             # A track does not know when the attempt in it starts: until that is told, values are against the first known frame.
-            whole = unwrapped(value)
+            whole = unwrapped(value, seen=series.seen)
             return replace(series, value=whole - first_known(whole), from_start=True)
         if signal.turns:
             return replace(series, value=unwrapped(value, series.sigma <= SURE_DEG, series.seen), turns=True)
