@@ -143,6 +143,7 @@ class Status(_Model):
     nothing_recorded: Annotated[bool, Field(description="for certain: not while the recorder is not heard")]
     replay: Replay | None
     evaluation: EvaluationStatus
+    teaching: Annotated[str, Field(description="changes with what /api/teaching says, which is to be asked for again then")]
     machine: MachineStatus | None
     calibration: Annotated[
         CalibrationCode | None, Field(description="what speaks against the calibration, or against which camera is which")

@@ -207,7 +207,7 @@ async def _read_again(taught: Taught, server: TabletServer) -> None:
         await asyncio.sleep(AGAIN_AFTER_S)
         if taught.troubles:
             await asyncio.to_thread(taught.read)
-            server.teaching = taught.words
+            server.teach(taught.words)
 
 
 async def _publish_health(context: ProcessContext, server: TabletServer, taught: Taught) -> None:

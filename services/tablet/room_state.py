@@ -139,8 +139,8 @@ class RoomState:
             self._health.pop(process, None)  # what its predecessor said is no news of this one
         self._presences.note(process, alive, now_ns)
 
-    def status(self, now_ns: int, clients: int) -> Status:
-        """The room as it is at `now_ns` (CLOCK_MONOTONIC)."""
+    def status(self, now_ns: int, clients: int, teaching: str = "") -> Status:
+        """The room as it is at `now_ns` (CLOCK_MONOTONIC); `teaching` is the revision of the words."""
         fusion_health, motion, used = self._said(ROUTER, now_ns), self._motion, self._used(now_ns)
         fusion = fusion_health.fusion if fusion_health else None
         return Status(
@@ -160,6 +160,7 @@ class RoomState:
             nothing_recorded=self.nothing_recorded(now_ns),
             replay=self._replay(now_ns),
             evaluation=self._evaluates(now_ns),
+            teaching=teaching,
             cameras=[self._camera(name, name in used, now_ns) for name in self._cameras],
             processes=[self._process(heard, now_ns) for _, heard in sorted(self._health.items())],
             clients=clients,

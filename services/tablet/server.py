@@ -20,6 +20,7 @@ from services.tablet.lesson_so_far import LessonSoFar
 from services.tablet.messages import AttemptList, Choose, Correction, Status, Teaching, Turn, Wish
 from services.tablet.room_state import RoomState
 from services.tablet.socket_description import describe_socket
+from services.tablet.teaching_words import revision
 
 STATUS_PERIOD_S = 0.5
 TOGETHER_S = 0.05
@@ -66,7 +67,7 @@ class TabletServer:
         self.audience = Audience()
         self._so_far = LessonSoFar(tell, clock_ns())
         self.listed: AttemptList | None = None
-        self.teaching = teaching
+        self.teach(teaching)
         self._tell = tell
         self._chosen: ActivityRequest | None = None
         self._chosen_ns = 0
@@ -79,6 +80,10 @@ class TabletServer:
     def attempts(self) -> Attempts:
         """Those on the list."""
         return self._so_far.attempts
+
+    def teach(self, teaching: Teaching) -> None:
+        """These are the words from now on. Every page asks for them when the next status tells it that they are others."""
+        self.teaching, self._teaching_revision = teaching, revision(teaching)
 
     def receive_motion(self, motion: Motion) -> None:
         """A live motion arrived: show it to everyone."""
@@ -194,7 +199,7 @@ class TabletServer:
 
     def status(self) -> Status:
         """The room now."""
-        return self.room.status(self._clock_ns(), len(self.audience))
+        return self.room.status(self._clock_ns(), len(self.audience), self._teaching_revision)
 
     def healths(self) -> list[Health]:
         """What each process that is heard says of itself."""

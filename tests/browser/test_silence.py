@@ -14,6 +14,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 FINE, UNSURE = "No correction this time", "Nothing clear to correct this time"
 UNSEEN, REST = "Not seen well enough to judge", "The rest was not seen well enough"
+WORDLESS = "There is something to correct, but the words for it are not here yet"
 
 
 def made_poor(feedback: Feedback) -> Feedback:
@@ -44,11 +45,15 @@ def test_silence_says_what_it_means(tablet: Page, room: Room) -> None:
         expect(tablet.locator("[data-praise]")).to_have_count(1 if made.praise else 0)
 
 
-def test_of_words_that_are_not_there_yet_silence_is_none(tablet: Page, room: Room) -> None:
-    """A cue whose words did not arrive was taken for "No correction this time"."""
+def test_a_cue_without_words_says_so_until_they_arrive(tablet: Page, room: Room) -> None:
+    """Once it was taken for "No correction this time"; then there was a score without any reason."""
     tablet.route("**/api/teaching", lambda route: route.fulfill(status=503, body=""))
     open_live(tablet, room)
     number = room.attempt(tried(SHOT, FAULT))
     expect(tablet.locator("[data-shown]")).to_have_attribute("data-shown", str(number))
     expect(tablet.locator("[data-score]")).to_be_visible()
-    expect(tablet.locator("[data-silence]")).to_have_count(0)
+    expect(tablet.locator("[data-wordless]")).to_have_text(WORDLESS)
+    expect(tablet.locator("[data-silence], [data-praise]")).to_have_count(0)
+    tablet.unroute("**/api/teaching")
+    expect(tablet.locator("[data-cue]")).to_be_visible()
+    expect(tablet.locator("[data-wordless]")).to_have_count(0)

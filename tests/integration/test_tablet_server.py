@@ -372,16 +372,28 @@ def test_a_server_that_cannot_read_its_words_shows_the_figure_names_the_file_and
     waiting.until(lambda: said_of_itself(room)[0] == "degraded", "that something is wrong")
     assert "teaching file squat.toml: `action` is missing; add it" in said_of_itself(room)[1]
     assert english(room, "squat") == shipped().teachings["squat"].title.en
+    before = revision(room)
     text = resources.files(models.teaching).joinpath("actions/squat.toml").read_text(encoding="utf-8")
     file.write_text(text.replace(f'en = "{english(room, "squat")}"', 'en = "Chair without a chair"', 1), encoding="utf-8")
     waiting.until(lambda: english(room, "squat") == "Chair without a chair", "the mended words")
     waiting.until(lambda: said_of_itself(room) == ("ok", ""), "that all is well")
+    after = revision(room)
+    assert after != before, "a page that has the words from before is not told that there are others"
+    room.stop_server()
+    room.start_server()
+    assert revision(room) == after, "the same words are called others after a restart"
 
 
 def said_of_itself(room: Room) -> tuple[str, str]:
     """State and reason of the page's server, as the page has them."""
     processes = httpx.get(f"{room.page}api/status").json()["processes"]
     return next(((one["state"], one["reason"]) for one in processes if one["name"] == "tablet"), ("", ""))
+
+
+def revision(room: Room) -> str:
+    """Of the words, as a page that joins is told."""
+    with join(room) as client:
+        return str(next_json(client, "status")["teaching"])
 
 
 def english(room: Room, action: str) -> str:

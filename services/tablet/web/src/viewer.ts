@@ -2,9 +2,10 @@ import { figureAgeMs, Freshness, STALE_AFTER_MS, TOO_LATE_MS, underWayMs } from 
 import { isDistant, Lateness } from './connection/lateness';
 import { Link } from './connection/link';
 import { makerOf, phaseOf, type Phase } from './connection/phase';
+import { TaughtWords } from './connection/taughtWords';
 import { complete, showsSomebody, standing, unsure, type Pose } from './figure/pose';
 import { JointState, MotionFrameError, readMotionFrame, type MotionFrame } from './protocol/motionFrame';
-import type { Attempt, AttemptList, Status, Teaching } from './protocol/messages';
+import type { Attempt, AttemptList, Status } from './protocol/messages';
 import { Replays } from './replay/replays';
 import type { ReplayShow } from './replay/show.svelte';
 import type { Lesson } from './state/lesson.svelte';
@@ -26,6 +27,7 @@ export class Viewer {
   private readonly freshness = new Freshness();
   private readonly lateness = new Lateness(isDistant(location.hostname));
   private readonly search = new Search();
+  private readonly taught: TaughtWords;
   private readonly words: ReturnType<typeof setInterval>;
   private waiting: MotionFrame | null = null;
   private underWay = 0;
@@ -69,6 +71,10 @@ export class Viewer {
       () => this.showLive(),
       () => (this.room.unreadable += 1),
     );
+    this.taught = new TaughtWords((teaching) => {
+      lesson.teaching = teaching;
+      suggest(teaching.languages[0]);
+    });
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
     this.link = new Link(`${scheme}://${location.host}/ws`, {
       motion: (buffer) => this.receive(buffer),
@@ -137,6 +143,7 @@ export class Viewer {
     const nowMs = performance.now();
     this.compareClocks(status.box_time_us);
     this.room.status = status;
+    void this.taught.hear(status.teaching);
     this.played = status.replay !== null;
     this.lesson.activity.confirm(status.evaluation.activity);
     this.lesson.pupil.confirm(status.evaluation.pupil);
@@ -174,17 +181,6 @@ export class Viewer {
       this.backToLive();
     }
     this.heardBoxUs = boxUs;
-  }
-
-  private async learnWords(): Promise<void> {
-    try {
-      const response = await fetch('/api/teaching');
-      if (!response.ok) return;
-      this.lesson.teaching = (await response.json()) as Teaching;
-      suggest(this.lesson.teaching.languages[0]);
-    } catch {
-      // Asked again with the next connection.
-    }
   }
 
   private showLive(): void {
@@ -265,7 +261,7 @@ export class Viewer {
     this.droppedMs = -Infinity;
     if (this.link.connected) {
       this.lesson.reconnect();
-      void this.learnWords();
+      this.taught.reconnect();
     } else {
       this.room.status = null; // what was known of the cameras is no longer; of attempts it is
     }

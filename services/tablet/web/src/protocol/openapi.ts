@@ -509,6 +509,11 @@ export interface components {
             nothing_recorded: boolean;
             replay: components["schemas"]["Replay"] | null;
             evaluation: components["schemas"]["EvaluationStatus"];
+            /**
+             * Teaching
+             * @description changes with what /api/teaching says, which is to be asked for again then
+             */
+            teaching: string;
             machine: components["schemas"]["MachineStatus"] | null;
             /**
              * Calibration

@@ -138,6 +138,7 @@ export const de: Words = {
       unseen: 'Nicht gut genug gesehen, um zu urteilen',
     },
     rest: 'Der Rest war nicht gut genug zu sehen',
+    wordless: 'Es gibt etwas zu korrigieren, aber die Worte dafür sind noch nicht da',
     score: 'Punkte',
     scoreOf: (value, sigma) => `${value} von 100, plus oder minus ${sigma}`,
     scoreUnknown: 'Punkte nicht bekannt',

@@ -184,6 +184,8 @@ export const en = {
     } satisfies Record<Silence, string>,
     /** The same where something was good, and too little else was seen. */
     rest: 'The rest was not seen well enough',
+    /** What is to be corrected is known, and what is said about it is not. */
+    wordless: 'There is something to correct, but the words for it are not here yet',
     score: 'Score',
     scoreOf: (value: string, sigma: string): string => `${value} of 100, give or take ${sigma}`,
     scoreUnknown: 'Score not known',

@@ -141,6 +141,7 @@ export const es: Words = {
       unseen: 'No se vio lo bastante bien para evaluarlo',
     },
     rest: 'El resto no se vio lo bastante bien',
+    wordless: 'Hay algo que corregir, pero las palabras aún no han llegado',
     score: 'Puntos',
     scoreOf: (value, sigma) => `${value} de 100, más o menos ${sigma}`,
     scoreUnknown: 'Puntos desconocidos',

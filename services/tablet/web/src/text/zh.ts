@@ -100,6 +100,7 @@ export const zh: Words = {
       unseen: '看得不够清楚，无法评价',
     },
     rest: '其余部分看得不够清楚',
+    wordless: '有要纠正的地方，但说明文字还没有到',
     score: '得分',
     scoreOf: (value, sigma) => `满分 100，得 ${value}，上下 ${sigma}`,
     scoreUnknown: '得分未知',
