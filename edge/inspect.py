@@ -22,7 +22,7 @@ from models.inspection import Inspected
 from models.networks.installed import FILE_NAME, FOLDER, decode_installed
 
 
-def inspect(site: Site | None, rig: Rig | None, data: Path) -> list[Inspected]:
+def inspect(site: Site | None, rig: Rig | None, data: Path, _file: Path | None) -> list[Inspected]:
     """Look at all networks, and at the files of a site's cameras.
 
     Args:

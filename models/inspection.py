@@ -27,5 +27,8 @@ class Inspected:
     fault: str = ""
 
 
-Inspection = Callable[[Site | None, Rig | None, Path], list[Inspected]]
-"""Looks at a part's things in the data folder; without a site at those that every site needs."""
+Inspection = Callable[[Site | None, Rig | None, Path, Path | None], list[Inspected]]
+"""Looks at a part's things in the data folder; without a site at those that every site needs.
+
+Given are the site, its rig, the data folder, and the site's file, for commands that are told to people; None without a site.
+"""

@@ -10,11 +10,10 @@ from typing import Final
 import numpy as np
 
 from models.arrays import Bool, Float
-from models.errors import UserError
 from models.motions.motion import Handed
 from models.skeleton import coco
 from models.teaching.measure import PHASES
-from models.teaching.standard import FRAME_S, Exemplar, Moments, Standard, decode
+from models.teaching.standard import FRAME_S, Exemplar, Moments, NoStandardError, Standard, decode
 
 LEAST_SEEN: Final = 0.5
 """Share of the frames between two keyframes in which a limb's joint must be known."""
@@ -36,7 +35,8 @@ def decode_own(data: bytes, name: str) -> Standard:
     """Read a standard's file that KineBox does not bring: `decode`, and its performances must show enough.
 
     Raises:
-        UserError: as `decode`, or why it can be no standard.
+        NoStandardError: as `decode`, or why its performances show too little.
+        UserError: as `decode`.
     """
     standard = decode(data, name)
     try:
@@ -45,7 +45,7 @@ def decode_own(data: bytes, name: str) -> Standard:
             require_movement(one, standard.stature_m)
         require_floor(standard.performance, standard.stature_m)
     except PerformanceError as error:
-        raise UserError(f"{name}: its performance {error}; take the file of another one") from error
+        raise NoStandardError(f"{name}: its performance {error}; take the file of another one") from error
     return standard
 
 

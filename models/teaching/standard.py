@@ -56,6 +56,10 @@ Array = npt.NDArray[Any]
 Moments = tuple[float, float, float, float]
 
 
+class NoStandardError(UserError):
+    """What a file holds can be no standard, neither by another name nor for a newer KineBox: another must take its place."""
+
+
 @dataclass(frozen=True, eq=False)
 class Exemplar:
     """A performance with its keyframes.
@@ -157,20 +161,21 @@ def decode(data: bytes, name: str) -> Standard:
         name: how errors call the file.
 
     Raises:
-        UserError: no such file, one of a newer layout, or a key that is missing, unknown or wrong.
+        NoStandardError: no such file, or a key that is missing, unknown or wrong.
+        UserError: one of a newer layout.
     """
     arrays = _arrays(data, name)
     if str(arrays.get("format")) != FORMAT:
-        raise UserError(f"{name}: is not a standard's file of KineBox; record a standard or export it again")
+        raise NoStandardError(f"{name}: is not a standard's file of KineBox; record a standard or export it again")
     layout = arrays.get("layout", np.array(None))
     if layout.shape != () or layout.dtype.kind not in "iu" or layout != LAYOUT:
         raise UserError(f"{name}: its layout is {layout}, this KineBox reads {LAYOUT}; update KineBox, or export the file again")
     for key in sorted(_KEYS ^ arrays.keys()):
-        raise UserError(f"{name}: {key} is {'missing' if key in _KEYS else 'unknown'}; export the file again")
+        raise NoStandardError(f"{name}: {key} is {'missing' if key in _KEYS else 'unknown'}; export the file again")
     try:
         return _standard(arrays)
     except (ValueError, TypeError, IndexError) as error:
-        raise UserError(f"{name}: is damaged ({error}); export the file again") from error
+        raise NoStandardError(f"{name}: is damaged ({error}); export the file again") from error
 
 
 def _standard(arrays: dict[str, Array]) -> Standard:
@@ -215,4 +220,4 @@ def _arrays(data: bytes, name: str) -> dict[str, Array]:
         with np.load(io.BytesIO(data), allow_pickle=False) as archive:
             return {key: archive[key] for key in archive}
     except _UNREADABLE as error:
-        raise UserError(f"{name}: is no standard's file, or is damaged; export or record it again") from error
+        raise NoStandardError(f"{name}: is no standard's file, or is damaged; export or record it again") from error

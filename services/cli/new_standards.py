@@ -1,7 +1,6 @@
 """Makes new standards: of an attempt of a lesson (`kinebox standard record`), or of a file from elsewhere (`import`)."""
 
 import datetime as dt
-import shlex
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -29,7 +28,7 @@ from services.lesson.replay import configuration
 from services.lesson.stretches import stretches
 from services.logs.printable import printable
 from services.site_file.reading import read_file
-from services.support.called import called
+from services.support.called import called, same_place
 from services.support.own_standards import OwnStandards
 from services.support.teaching_files import STANDARD_SUFFIX, folder_of_own
 
@@ -174,11 +173,9 @@ def _of_another_school(file: Path, order: Import) -> Standard:
 
 def _options(own: OwnStandards, data: Path, site: Path | None) -> str:
     """By which another command finds the same standards."""
-    options = f"--data {shlex.quote(str(data))}"
-    if site is not None:
-        return f"{options} --site {shlex.quote(str(site))}"
+    options = same_place(data, site)
     # What a lesson's own site file names, no other command knows of.
-    return options if own.folder == own_standards(data, None).folder else f"{options} --site FILE"
+    return options if site is not None or own.folder == own_standards(data, None).folder else f"{options} --site FILE"
 
 
 def _keep(own: OwnStandards, shown: _Performance, options: str) -> None:

@@ -61,7 +61,9 @@ def _rehearsal(site: Site) -> tuple[Finding, ...]:
 
 def gather_inspected(configuration: Configuration, data: Path, inspections: Iterable[Inspection]) -> list[Inspected]:
     """Have every part look at its things."""
-    return [each for inspect in inspections for each in inspect(configuration.site, configuration.rig, data)]
+    site, rig = configuration.site, configuration.rig
+    file = None if site is None else configuration.file  # No command can go by one that cannot be read.
+    return [each for inspect in inspections for each in inspect(site, rig, data, file)]
 
 
 def judge_inspected(inspected: Iterable[Inspected]) -> Examined:

@@ -18,6 +18,12 @@ def called() -> str:
     return shlex.quote(program)
 
 
+def same_place(data: Path, site: Path | None) -> str:
+    """The options by which another command goes by the same data folder, and the same site file if this one was told any."""
+    options = f"--data {shlex.quote(str(data))}"
+    return options if site is None else f"{options} --site {shlex.quote(str(site))}"
+
+
 def as_called(text: str) -> str:
     """A text with every command that stands in quotes ('kinebox lessons', `kinebox doctor`) as it is to be typed here."""
     return _COMMAND.sub(lambda _: called(), text)

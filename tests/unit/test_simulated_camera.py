@@ -120,7 +120,7 @@ def test_a_lesson_that_cannot_be_played_is_found_before_anything_is_started(
     site = site_of("cam01", "cam02")
     with pytest.raises(UserError, match=said):
         check(site, rig_of(plan_with(size_px=SIZE_PX)), tmp_path)
-    assert any(found.fault for found in inspect(site, None, tmp_path))
+    assert any(found.fault for found in inspect(site, None, tmp_path, None))
 
 
 def test_a_film_that_is_shown_only_after_a_swap_is_looked_for_before_anything_is_started(tmp_path: Path) -> None:
@@ -150,9 +150,9 @@ def test_a_calibration_of_another_rig_is_refused_though_its_pictures_have_the_sa
     with pytest.raises(UserError, match=said) as refused:
         check(site_of("cam01", "cam02"), rig_of(foreign), tmp_path)
     assert "\n" not in str(refused.value)
-    faults = [found.fault for found in inspect(site_of("cam01", "cam02"), rig_of(foreign), tmp_path)]
+    faults = [found.fault for found in inspect(site_of("cam01", "cam02"), rig_of(foreign), tmp_path, None)]
     assert str(refused.value) in faults
-    assert str(refused.value) not in [found.fault for found in inspect(site_of("cam01", "cam02"), rig_of(plan), tmp_path)]
+    assert str(refused.value) not in [found.fault for found in inspect(site_of("cam01", "cam02"), rig_of(plan), tmp_path, None)]
 
 
 def test_a_lesson_may_be_calibrated_anew_in_a_world_of_its_own(tmp_path: Path) -> None:

@@ -6,9 +6,11 @@ from contextlib import contextmanager
 from importlib import resources
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import models.teaching
+from models.teaching.standard import LAYOUT
 from services.doctor.finding import Examined
 from services.support import teaching_files
 from tests.integration.doctor_troubles.trouble import Stage, Trouble, broken, examined, flip_byte
@@ -56,6 +58,21 @@ def _as_another_action(file: Path) -> None:
     replace_text(other, '"squat"', '"lunge"')
 
 
+def _as_a_copy(file: Path) -> None:
+    shutil.copy(file, file.with_name("squat-old.npz"))
+
+
+def _as_of_a_newer_kinebox(file: Path) -> None:
+    with np.load(file) as archive:
+        arrays = dict(archive)
+    np.savez_compressed(file, allow_pickle=False, **(arrays | {"layout": np.array(LAYOUT + 1)}))
+
+
+def _as_one_of_a_kind(file: Path) -> None:
+    _as_another_action(file.parents[1] / "actions" / "squat.toml")
+    file.with_name("lunge.npz").write_bytes(b"damaged")
+
+
 TAUGHT: dict[str, Trouble] = {
     "an action of KineBox's own is cut off": Trouble(
         shipped_broken("actions/squat.toml", _cut_off), "action squat", r"shipped/actions/squat\.toml", "put back the file"
@@ -73,7 +90,25 @@ TAUGHT: dict[str, Trouble] = {
         own_broken("standards/squat.npz", flip_byte),
         "standard squat",
         r"school/standards/squat\.npz",
-        "run `kinebox standard restore squat`",
+        r"run `kinebox standard restore squat --data \S+/data --site \S+/site\.toml`: the one before counts again",
+    ),
+    "a standard of the school's own is damaged, and there is none before it": Trouble(
+        own_broken("standards/squat.npz", _as_one_of_a_kind),
+        "standard lunge",
+        r"school/standards/lunge\.npz: is no standard's file, or is damaged",
+        "export or record it again",
+    ),
+    "a standard of the school's own has another name than its action": Trouble(
+        own_broken("standards/squat.npz", _as_a_copy),
+        "standard squat-old",
+        r"school/standards/squat-old\.npz: is of the action 'squat'",
+        "name the file after it",
+    ),
+    "a standard of the school's own is of a newer KineBox": Trouble(
+        own_broken("standards/squat.npz", _as_of_a_newer_kinebox),
+        "standard squat",
+        r"school/standards/squat\.npz: its layout is 2, this KineBox reads 1",
+        "update KineBox",
     ),
     "an action of the school's own has no standard": Trouble(
         own_broken("actions/squat.toml", _as_another_action),
