@@ -7,6 +7,9 @@ of the time in which there was a figure, from the drill's first to its last inst
 the fault, or was cut; `never_said` counts the runs in which it did neither. `failed` counts the runs in which what must follow did
 not within a minute: the others go on, and the box's log so far is kept beside the table. Of the last box's runs stands how much its
 memory grew from the first round to the last, and whatever it left behind.
+
+With `--page` Chromium shows the page meanwhile, which takes much of a core: `coloured_still_s` is the longest time for which its
+figure was in colour although no motion came.
 """
 
 import argparse
@@ -17,11 +20,13 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import psutil
+from playwright.sync_api import sync_playwright
 from rich.console import Console
 from rich.table import Table
 
@@ -29,15 +34,18 @@ from services.bus.zenoh_bus import open_client
 from services.lesson.lesson_reader import open_lesson
 from tests.bench.losses import Span, lost_s
 from tests.bench.report import Report
+from tests.chromium import ARGUMENTS, NONE, chromium
 from tests.faults.box import ISOLATED, Box, running
 from tests.faults.client import Client
 from tests.faults.disk import may_mount
 from tests.faults.drills import DRILLS, Outcome, Stage, faults_of_site, may_set_clock
+from tests.faults.page_watch import PageWatch
 from tests.faults.traces import Before, left_behind
 
 RECOVERY_BAR_S = 3.0
 LOST_BAR_S = 1.0
 GROWTH_BAR_PCT = 2.0
+STILL_BAR_S = 1.0
 GROWTH_RUNS = 3
 """In the first round the spares are still being made, so growth is from the second on."""
 NEVER_SAID = {"slow-tablet"}
@@ -69,6 +77,10 @@ class Played:
         """Of one drill."""
         return [outcome for outcome in self.outcomes if outcome.drill == drill]
 
+    def still_s(self, drill: str) -> float:
+        """The longest that the page showed a figure that stood still in colour; NaN if no page was watched."""
+        return _worst(outcome.still_s for outcome in self.of(drill))
+
     def failures(self, drill: str) -> int:
         """In how many runs it failed."""
         return sum(name == drill for name, _ in self.failed)
@@ -80,18 +92,41 @@ class Played:
         return 100 * (rounds[-1] / rounds[1] - 1) if len(rounds) >= GROWTH_RUNS else float("nan")
 
 
-def play(names: Sequence[str], runs: int, data: Path) -> Played:
+def play(names: Sequence[str], runs: int, data: Path, *, page: bool) -> Played:
     """All drills, so many times each."""
     with tempfile.TemporaryDirectory(prefix="drills-") as folder:
         before, processes = Before.look(), list[psutil.Process]()
         with running(Path(folder), data, ISOLATED + faults_of_site(), disk="full-disk" in names) as box:
-            played = _play_in(box, names, runs, processes, Path(folder) / "lessons", data / "bench")
+            with _watched(box) if page else nullcontext() as watch:
+                played = _play_in(box, names, runs, processes, Path(folder) / "lessons", data / "bench", watch)
             processes += box.descendants()
         played.left = left_behind(box, processes, before)
     return played
 
 
-def _play_in(box: Box, names: Sequence[str], runs: int, processes: list[psutil.Process], shelf: Path, logs: Path) -> Played:
+@contextmanager
+def _watched(box: Box) -> Iterator[PageWatch]:
+    path = chromium()
+    if path is None:
+        sys.exit(NONE)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=path, args=list(ARGUMENTS))
+        page = browser.new_page(viewport={"width": 800, "height": 500})
+        watch = PageWatch(page)
+        page.goto(box.page)
+        yield watch
+        browser.close()
+
+
+def _play_in(
+    box: Box,
+    names: Sequence[str],
+    runs: int,
+    processes: list[psutil.Process],
+    shelf: Path,
+    logs: Path,
+    watch: PageWatch | None,
+) -> Played:
     """The drills of all runs; finished lessons are put on the shelf, so that a small disk is full only when it shall be."""
     played, watches = Played(), list[Span]()
     bus = open_client(box.endpoint, threading.Event())
@@ -109,6 +144,8 @@ def _play_in(box: Box, names: Sequence[str], runs: int, processes: list[psutil.P
                     _shelve(box, shelf)
                     stage.record("start")
                 began_s = time.monotonic()
+                if watch:
+                    watch.begin()
                 try:
                     outcome = DRILLS[name](stage)
                 except AssertionError as error:
@@ -116,6 +153,7 @@ def _play_in(box: Box, names: Sequence[str], runs: int, processes: list[psutil.P
                     kept = _keep_log(box, logs / f"faults-{run + 1}-{name}.log")
                     print(f"{run + 1:3} {name:16} failed: {error}; the log until then: {kept}")
                     continue
+                outcome.still_s = watch.still_s if watch else None
                 played.rounds[-1].append(outcome)
                 watches.append((began_s, time.monotonic()))
                 if not client.status()["recording"]:  # the disk was full, which ends a lesson
@@ -126,9 +164,9 @@ def _play_in(box: Box, names: Sequence[str], runs: int, processes: list[psutil.P
         _shelve(box, shelf)
     bus.close()
     ticks_s = _recorded_s(shelf)
-    for outcome, watch in zip(played.outcomes, watches, strict=True):
+    for outcome, span in zip(played.outcomes, watches, strict=True):
         if outcome.drill not in UNRECORDED:
-            outcome.lost_s = lost_s(ticks_s, client.seen.figures_s, *watch)
+            outcome.lost_s = lost_s(ticks_s, client.seen.figures_s, *span)
     return played
 
 
@@ -164,6 +202,7 @@ def figures(names: Sequence[str], played: Played) -> dict[str, float]:
             f"{name}.pause_s.max": _worst(run.pause_s for run in runs),
             f"{name}.lost_s.max": _worst(run.lost_s for run in runs),
             f"{name}.said_s.max": _worst(run.said_s for run in runs),
+            f"{name}.coloured_still_s.max": played.still_s(name),
             f"{name}.failed": played.failures(name),
         }
         if name not in NEVER_SAID:
@@ -171,11 +210,13 @@ def figures(names: Sequence[str], played: Played) -> dict[str, float]:
     return measured | {"rss_growth_pct": played.growth_pct, "left_behind": len(played.left), "runs": len(played.rounds)}
 
 
-def bars(names: Sequence[str], runs: int) -> dict[str, tuple[str, float]]:
+def bars(names: Sequence[str], runs: int, *, page: bool) -> dict[str, tuple[str, float]]:
     """What so many runs of these drills are held against, whatever comes of them."""
     held: dict[str, tuple[str, float]] = {}
     for name in names:
         held |= {f"{name}.recovery_s.max": ("<=", RECOVERY_BAR_S), f"{name}.failed": ("<=", 0.0)}
+        if page:
+            held[f"{name}.coloured_still_s.max"] = ("<=", STILL_BAR_S)
         if name not in UNRECORDED:
             held[f"{name}.lost_s.max"] = ("<=", LOST_BAR_S)
         if name not in NEVER_SAID:
@@ -191,7 +232,18 @@ def _worst(values: Iterable[float | None]) -> float:
 
 def table(names: Sequence[str], played: Played) -> Table:
     """A row a drill."""
-    columns = ("drill", "runs", "failed", "recovery median", "max", "pause max", "said max", "never said", "lost max")
+    columns = (
+        "drill",
+        "runs",
+        "failed",
+        "recovery median",
+        "max",
+        "pause max",
+        "said max",
+        "never said",
+        "lost max",
+        "coloured still max",
+    )
     shown = Table(title="fault drills")
     for column in columns:
         shown.add_column(column, justify="left" if column == "drill" else "right")
@@ -212,6 +264,7 @@ def table(names: Sequence[str], played: Played) -> Table:
             worst(f"{name}.said_s.max"),
             str(sum(run.said_s is None for run in runs)) if runs and name not in NEVER_SAID else "",
             worst(f"{name}.lost_s.max"),
+            worst(f"{name}.coloured_still_s.max"),
         )
     return shown
 
@@ -222,6 +275,7 @@ def main() -> int:
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--runs", type=int, default=20)
     parser.add_argument("--drills", nargs="+", choices=sorted(DRILLS), default=list(DRILLS), metavar="DRILL")
+    parser.add_argument("--page", action="store_true")
     arguments = parser.parse_args()
     names = [name for name in DRILLS if name in arguments.drills]
     with tempfile.TemporaryDirectory() as folder:
@@ -229,12 +283,12 @@ def main() -> int:
             if name in names and not allowed:
                 names.remove(name)
                 print(f"{name} is left out: it needs rights that this process has not")
-    played = play(names, arguments.runs, arguments.data)
+    played = play(names, arguments.runs, arguments.data, page=arguments.page)
     report = Report("bench-faults")
     report.add(figures(names, played))
     report.rows = [vars(outcome) for outcome in played.outcomes]
-    Console(width=120).print(table(names, played))
-    report.show(bars(names, arguments.runs))
+    Console(width=140).print(table(names, played))
+    report.show(bars(names, arguments.runs, page=arguments.page))
     print("left behind: " + (", ".join(played.left) or "nothing"))
     print(f"written to {report.write(arguments.data)}")
     if report.missed:

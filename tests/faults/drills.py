@@ -57,6 +57,7 @@ class Outcome:
         said_s: until the box said that something was wrong, on the page's socket or by cutting it; None if it never did.
         rss_mb: of all processes, afterwards.
         lost_s: what is missing in the record although there was a figure; None if nothing was recorded.
+        still_s: the longest that a page showed the figure in colour although no motion came; None if no page was watched.
     """
 
     drill: str
@@ -66,6 +67,7 @@ class Outcome:
     said_s: float | None
     rss_mb: float
     lost_s: float | None = None
+    still_s: float | None = None
 
 
 @dataclass

@@ -16,10 +16,10 @@ def good(drill: str, rss_mb: float = 500.0) -> Outcome:
     return Outcome(drill, fault_s=10.0, recovery_s=1.0, pause_s=1.0, said_s=0.5, rss_mb=rss_mb, lost_s=0.2)
 
 
-def missed(played: Played, names: Sequence[str], runs: int) -> list[str]:
+def missed(played: Played, names: Sequence[str], runs: int, *, page: bool = False) -> list[str]:
     report = Report("bench-faults")
     report.add(figures(names, played))
-    report.show(bars(names, runs))
+    report.show(bars(names, runs, page=page))
     return report.missed
 
 
@@ -49,6 +49,14 @@ def test_a_fault_that_the_box_never_tells_of_is_missed() -> None:
     assert missed(Played([[silent]]), ["kill-fusion"], 1) == ["kill-fusion.said_s.max", "kill-fusion.never_said"]
 
 
+@pytest.mark.parametrize(("still_s", "misses"), [(0.7, False), (1.6, True), (None, True)])
+def test_a_page_whose_figure_stands_still_in_colour_is_missed(still_s: float | None, misses: bool) -> None:
+    seen = good("kill-fusion")
+    seen.still_s = still_s
+    expected = ["kill-fusion.coloured_still_s.max"] if misses else []
+    assert missed(Played([[seen]]), ["kill-fusion"], 1, page=True) == expected
+
+
 def test_what_cannot_be_kept_or_need_not_be_said_is_held_against_nothing() -> None:
     full, slow = good("full-disk"), good("slow-tablet")
     full.lost_s, slow.said_s = None, None
@@ -61,6 +69,6 @@ def test_the_exit_code_says_whether_a_bar_was_missed(
 ) -> None:
     played = Played([[good("kill-fusion")]], failed=failed)
     monkeypatch.setattr(faults, "DRILLS", {"kill-fusion": None})
-    monkeypatch.setattr(faults, "play", lambda *_: played)
+    monkeypatch.setattr(faults, "play", lambda *_, **_named: played)
     monkeypatch.setattr(sys, "argv", ["faults", "--data", str(tmp_path), "--runs", "1"])
     assert faults.main() == code

@@ -16,6 +16,8 @@ import { suggest } from './text/words.svelte';
 
 /** Words change at most so often: nobody can read faster. */
 const WORDS_PERIOD_MS = 250;
+/** A figure that has halted loses its colour at most so much later. */
+const HALTS_PERIOD_MS = 100;
 const DELAY_GAIN = 0.15;
 const SECOND_MS = 1000;
 
@@ -29,6 +31,7 @@ export class Viewer {
   private readonly search = new Search();
   private readonly taught: TaughtWords;
   private readonly words: ReturnType<typeof setInterval>;
+  private readonly halts: ReturnType<typeof setInterval>;
   private waiting: MotionFrame | null = null;
   private underWay = 0;
   private pose: Pose = standing();
@@ -86,6 +89,7 @@ export class Viewer {
     canvas.addEventListener('pointerdown', () => this.replays.touch());
     this.link.start();
     this.words = setInterval(() => this.turnComes(), WORDS_PERIOD_MS);
+    this.halts = setInterval(() => this.freshness.isHalted(performance.now()) && this.fade(), HALTS_PERIOD_MS);
   }
 
   resetView(): void {
@@ -135,6 +139,7 @@ export class Viewer {
 
   dispose(): void {
     clearInterval(this.words);
+    clearInterval(this.halts);
     this.link.stop();
     this.stage.dispose();
   }
@@ -184,7 +189,7 @@ export class Viewer {
   }
 
   private showLive(): void {
-    this.stage.show(this.room.phase === 'live' ? this.pose : unsure(this.pose));
+    this.stage.show(this.isSure(performance.now()) ? this.pose : unsure(this.pose));
     if (this.hasFigure) this.stage.frameOnce();
   }
 
@@ -238,7 +243,7 @@ export class Viewer {
     this.hasFigure = true;
     this.figures += 1;
     if (!this.replays.onStage) {
-      this.stage.show(this.pose);
+      this.stage.show(this.freshness.isHalted(nowMs) ? unsure(this.pose) : this.pose);
       this.stage.frameOnce();
     }
     const boxMs = this.link.clock.boxMs(nowMs);
@@ -286,8 +291,8 @@ export class Viewer {
       dropping: nowMs - this.droppedMs < STALE_AFTER_MS,
       nobody: this.search.inVain(nowMs),
     });
-    if (phase !== 'live' && !this.replays.onStage && this.stage.colouredShare > 0) this.stage.show(unsure(this.pose));
     this.room.phase = phase;
+    if (!this.isSure(nowMs)) this.fade();
     this.room.lateCause = this.lateness.cause(nowMs);
     this.room.figureAgeS = this.hasFigure ? Math.floor(this.freshness.ageMs(nowMs) / 1000) : null;
     // What is played is as old as its lesson.
@@ -296,6 +301,17 @@ export class Viewer {
     this.tellTime(nowMs);
     this.countFigures(nowMs);
     this.expose(phase);
+  }
+
+  private isSure(nowMs: number): boolean {
+    return this.room.phase === 'live' && !this.freshness.isHalted(nowMs);
+  }
+
+  /** What is on the stage is no longer what the pupil does. */
+  private fade(): void {
+    if (this.replays.onStage || this.stage.colouredShare === 0) return;
+    this.stage.show(unsure(this.pose));
+    this.exposeColour();
   }
 
   /** By the second: ages are told in minutes. */
@@ -311,12 +327,16 @@ export class Viewer {
     this.counted = { figures: this.figures, atMs: nowMs };
   }
 
+  private exposeColour(): void {
+    this.root.dataset['coloured'] = this.stage.colouredShare.toFixed(2);
+  }
+
   private expose(phase: Phase): void {
     const data = this.root.dataset;
     data['phase'] = phase;
     data['figures'] = String(this.figures);
     data['drawn'] = String(this.stage.drawn);
-    data['coloured'] = this.stage.colouredShare.toFixed(2);
+    this.exposeColour();
     data['stage'] = this.replays.onStage ? 'replay' : 'live';
     data['attempt'] = this.show.id === null ? '' : String(this.show.id);
     data['position'] = this.replays.positionS.toFixed(2);

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { BoxClock } from '../src/connection/boxClock';
-import { figureAgeMs, Freshness, STALE_AFTER_MS, underWayMs } from '../src/connection/freshness';
+import { figureAgeMs, Freshness, HALTED_AFTER_MS, STALE_AFTER_MS, underWayMs } from '../src/connection/freshness';
 import { makerOf, phaseOf, type PhaseInputs } from '../src/connection/phase';
 import { reconnectDelayMs } from '../src/connection/reconnect';
 import type { ProcessStatus } from '../src/protocol/messages';
@@ -92,6 +92,15 @@ describe('freshness', () => {
     freshness.note(frame(1, 400), 10_000);
     expect(freshness.isStale(9_600 + STALE_AFTER_MS)).toBe(false);
     expect(freshness.isStale(9_601 + STALE_AFTER_MS)).toBe(true);
+  });
+
+  it('takes the colour of a figure that stands still long before it is called interrupted', () => {
+    const freshness = new Freshness();
+    expect(freshness.isHalted(0)).toBe(true);
+    freshness.note(frame(1, 100), 10_000);
+    expect(freshness.isHalted(9_900 + HALTED_AFTER_MS)).toBe(false);
+    expect(freshness.isHalted(9_901 + HALTED_AFTER_MS)).toBe(true);
+    expect(freshness.isStale(9_901 + HALTED_AFTER_MS)).toBe(false);
   });
 
   it('is not renewed by frames that repeat an old observation', () => {

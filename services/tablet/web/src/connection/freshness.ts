@@ -1,6 +1,11 @@
 import type { MotionFrame } from '../protocol/motionFrame';
 
-/** Motion older than this is no longer shown as live. */
+/**
+ * A figure older than this is grey: it has stood still for longer than a healthy box ever lets it, a busy one hardly ever. Nothing
+ * is said yet, for most halts are over before anybody has read what would be.
+ */
+export const HALTED_AFTER_MS = 500;
+/** Motion older than this is no longer called live. */
 export const STALE_AFTER_MS = 1500;
 /** A frame that was under way for longer is not drawn: it shows a past that the tablet has already missed. */
 export const TOO_LATE_MS = 300;
@@ -28,6 +33,10 @@ export class Freshness {
   /** Milliseconds since the exposure of the newest picture that is part of the figure; infinite if there is none. */
   ageMs(nowMs: number): number {
     return nowMs - this.exposedMs;
+  }
+
+  isHalted(nowMs: number): boolean {
+    return this.ageMs(nowMs) > HALTED_AFTER_MS;
   }
 
   isStale(nowMs: number): boolean {
