@@ -144,7 +144,7 @@ class MachineHealth(msgspec.Struct, frozen=True):
         disk_free_mib: room where lessons and logs are kept.
         temperature_c: of the processor; None where the machine does not say.
         wall_minus_monotonic_ns: CLOCK_REALTIME less CLOCK_MONOTONIC.
-        clock_step_ms: how far the wall clock was set, forwards positive, in the last minute; 0 if it was not.
+        clock_step_ms: how far the wall clock was set in the last minute, forwards positive: the largest step; 0 if it was not.
         throttled: the processor was slowed down, for its heat or for want of power, in the last minute.
     """
 

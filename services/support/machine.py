@@ -105,10 +105,11 @@ class _LastMinute:
 
     entries: deque[tuple[int, float]] = field(default_factory=deque)
 
-    def total(self, now_ns: int) -> float:
+    def largest(self, now_ns: int) -> float:
+        """The figure that is furthest from 0, of two the newer; 0 if there is none."""
         while self.entries and now_ns - self.entries[0][0] > WINDOW_NS:
             self.entries.popleft()
-        return sum(figure for _, figure in self.entries)
+        return max((figure for _, figure in reversed(self.entries)), key=abs, default=0.0)
 
 
 class MachineMeter:
@@ -149,11 +150,12 @@ class MachineMeter:
             if abs(step_ms) > STEP_MS + SLEW_MS_S * elapsed_s:
                 self._steps_ms.entries.append((now_ns, step_ms))
         self._before = (offset_ns, now_ns)
-        return self._steps_ms.total(now_ns)
+        # Not their sum: a clock that was set forwards and back was set twice, and next to nothing is left of that.
+        return self._steps_ms.largest(now_ns)
 
     def _was_throttled(self, now_ns: int) -> bool:
         reading = self._sensors.throttling()
         if reading.now or reading.count > self._throttle_count:
             self._throttled.entries.append((now_ns, 1.0))
         self._throttle_count = reading.count
-        return self._throttled.total(now_ns) > 0
+        return self._throttled.largest(now_ns) > 0

@@ -77,7 +77,7 @@ class MachineStatus(_Model):
     disk_free_mib: Annotated[float | None, Field(description="room where lessons and logs are kept")]
     temperature_c: float | None
     clock_ms: Annotated[int, Field(description="the box's date and time, milliseconds since 1970 in UTC")]
-    clock_step_ms: Annotated[float | None, Field(description="how far that clock was set in the last minute")]
+    clock_step_ms: Annotated[float | None, Field(description="how far that clock was set in the last minute: the largest step")]
     troubles: Annotated[list[MachineCode], Field(description="what is wrong, worst first")]
 
 

@@ -188,7 +188,11 @@ _MACHINE_GAUGES: _Measures[MachineStatus] = (
     ("disk_free_bytes", "Room where lessons and logs are kept.", lambda machine: _scaled(machine.disk_free_mib, _MIB)),
     ("temperature_celsius", "Temperature of the processor.", lambda machine: machine.temperature_c),
     ("clock_seconds", "The box's date and time, in seconds since 1970 in UTC.", lambda machine: machine.clock_ms * 1e-3),
-    ("clock_step_seconds", "How far the clock was set in the last minute.", lambda m: _scaled(m.clock_step_ms, 1e-3)),
+    (
+        "clock_step_seconds",
+        "How far the clock was set in the last minute: the largest step.",
+        lambda m: _scaled(m.clock_step_ms, 1e-3),
+    ),
 )
 
 

@@ -252,6 +252,7 @@ def may_set_clock() -> bool:
 def clock_step(stage: Stage) -> Outcome:
     """The wall clock of the machine is really set, forwards and back again, as by a time server."""
     stage.settle()
+    until(lambda: not clock_is_called_set(stage.client.status()), "a clock set earlier to be no news", 120.0)  # told for a minute
     fault_s = time.monotonic()
     with _stepped(CLOCK_STEP_S):
         time.sleep(3.0)  # how long it lasts

@@ -62,14 +62,31 @@ def test_a_clock_that_a_time_service_makes_faster_is_not_set() -> None:
         assert meter().clock_step_ms == 0
 
 
-def test_a_clock_that_is_set_twice_has_gone_the_sum() -> None:
+@pytest.mark.parametrize(
+    ("steps_s", "told"),
+    [
+        ((10.0, -4.0), "forwards by 10.0 s"),
+        ((4.0, -10.0), "back by 10.0 s"),
+        ((10.0, -10.0), "back by 10.0 s"),
+        ((10.0, -10.000_000_3), "back by 10.0 s"),
+        ((-10.000_01, 10.0), "back by 10.0 s"),
+    ],
+)
+def test_a_clock_that_is_set_forwards_and_back_is_not_told_as_if_it_had_hardly_been_set(
+    steps_s: tuple[float, float], told: str
+) -> None:
     machine = Machine()
     meter = machine.meter()
     meter()
-    for step_s in (10.0, -4.0):
-        machine.pass_s(1.0, wall_s=1.0 + step_s)
+    for step_s in steps_s:
+        machine.pass_s(20.0, wall_s=20.0 + step_s)
         meter()
-    assert meter().clock_step_ms == pytest.approx(6000)
+    (trouble,) = machine_troubles(msgspec.structs.replace(GOOD, clock_step_ms=meter().clock_step_ms))
+    assert trouble.words == f"the clock was set {told} in the last minute"
+    machine.pass_s(41.0)
+    assert meter().clock_step_ms == pytest.approx(steps_s[1] * 1e3), "the first is too long ago, the second is not"
+    machine.pass_s(20.0)
+    assert meter().clock_step_ms == 0
 
 
 def test_the_real_clocks_are_the_systems() -> None:

@@ -353,7 +353,7 @@ export interface components {
             clock_ms: number;
             /**
              * Clock Step Ms
-             * @description how far that clock was set in the last minute
+             * @description how far that clock was set in the last minute: the largest step
              */
             clock_step_ms: number | null;
             /**
