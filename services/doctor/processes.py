@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import zip_longest
 from pathlib import Path
 
 import psutil
@@ -9,6 +10,7 @@ import psutil
 from services.supervisor.child import name_of
 
 _MAIN = "services.cli.main"
+_SITE = "--site"
 
 
 @dataclass(frozen=True)
@@ -67,11 +69,22 @@ def _ours() -> Iterator[tuple[psutil.Process, list[str], str | None]]:
 
 def _is_supervisor(command: list[str]) -> bool:
     called = _MAIN in command or any(Path(word).name == "kinebox" for word in command[:2])
-    return called and "run" in command and "--site" in command
+    return called and "run" in command and _site_file(command) is not None
 
 
 def _site_of(process: psutil.Process, command: list[str]) -> Path | None:
     try:
-        return (Path(process.cwd()) / command[command.index("--site") + 1]).resolve()
-    except (psutil.Error, ValueError, IndexError, OSError):
+        site_file = _site_file(command)
+        return None if site_file is None else (Path(process.cwd()) / site_file).resolve()
+    except (psutil.Error, OSError):
         return None
+
+
+def _site_file(command: list[str]) -> str | None:
+    """As it was typed: `--site FILE` or `--site=FILE`, which mean the same."""
+    for word, after in zip_longest(command, command[1:]):
+        if word == _SITE:
+            return after
+        if word.startswith(f"{_SITE}="):
+            return word.removeprefix(f"{_SITE}=")
+    return None
