@@ -51,6 +51,11 @@ class LogWriter:
         if self.problem:
             self._keep(time, b"", 0)
 
+    def lose(self, lines: int, reason: str) -> None:
+        """Count lines that were lost before they came here."""
+        self._lost += lines
+        self.problem = reason
+
     def close(self) -> None:
         """Let go of the files."""
         for descriptor in (self._file, self._lock):

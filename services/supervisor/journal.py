@@ -22,6 +22,7 @@ from services.logs.files import LATEST
 from services.logs.printable import printable
 from services.logs.readable import details, local, speaker
 from services.logs.record import LogRecord, record_of
+from services.logs.write_behind import HELD_UP, WriteBehind
 from services.logs.writer import IN_USE, LogWriter
 from services.supervisor.console import Console
 from services.supervisor.traceback_lines import TracebackLines
@@ -34,7 +35,7 @@ _DEFAULTS = LogsConfig()
 
 
 class Journal:
-    """Writes lines. A console that is gone, or that nobody reads, or a disc that is full or read-only must not stop the box.
+    """Writes lines. A console that is gone or that nobody reads, or a disc that is full, read-only or stalls must not stop the box.
 
     While nothing can be kept, which is said once, the console gets everything.
 
@@ -56,7 +57,7 @@ class Journal:
         self._output = Console(sys.stdout)
         self._command = command
         self._tracebacks: dict[str, TracebackLines] = defaultdict(TracebackLines)
-        self._writer = LogWriter(folder, int(config.max_file_mb * 1e6), config.max_files)
+        self._writer = WriteBehind(LogWriter(folder, int(config.max_file_mb * 1e6), config.max_files))
         self._next_try_s = time.monotonic() + _TRY_AGAIN_S
         self.trouble: Trouble | None = None
         self._tell_problem()
@@ -82,7 +83,7 @@ class Journal:
         if self.trouble is not None and now_s >= self._next_try_s:
             self._next_try_s = now_s + _TRY_AGAIN_S
             self._writer.try_again(_now())
-            self._tell_problem()
+        self._tell_problem()  # A disk may have stalled, or go on, since the last line.
         if left_out := self._console.left_out():
             kept = "" if self.trouble is not None else f"; '{self._command}' has them"
             self.say(f"nobody read what is shown here: {left_out} lines were left out{kept}", level="warning")
@@ -110,7 +111,9 @@ class Journal:
         """Close the file, and let go of the console."""
         for process in self._tracebacks:
             self._end_traceback(process)
-        self._writer.close()
+        if given_up := self._writer.close():
+            event = f"{given_up} lines of the log were given up: {HELD_UP}"
+            self._show(record_of({"event": event, "level": "warning"}, _SUPERVISOR, _now()))
         self._console.close()
         self._output.close()
 
