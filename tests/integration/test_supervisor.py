@@ -1,17 +1,20 @@
 """`kinebox run` with real processes that crash, hang and refuse."""
 
 import contextlib
+import fcntl
 import os
 import pty
 import re
 import signal
 import termios
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 import msgspec
 import pytest
 
+from services.logs.write_behind import HELD_UP
 from tests.integration.box import NAMES, Box, HealthWatch
 from tests.integration.waiting import until
 
@@ -29,6 +32,40 @@ def test_a_box_starts_tells_where_its_page_is_and_ends_cleanly(tmp_path: Path) -
         assert box.end() == 0
         assert box.running() == []
         assert len(box.start_times_ns()) == 1
+
+
+def test_a_disk_that_stalls_under_the_log_holds_up_no_restart_and_is_said(tmp_path: Path) -> None:
+    logs = tmp_path / "data" / "logs"
+    logs.mkdir(parents=True)
+    os.mkfifo(logs / "kinebox-000001.log")  # It holds up whoever writes to it until somebody reads.
+    reader = os.open(logs / "kinebox-000001.log", os.O_RDONLY | os.O_NONBLOCK)
+    fcntl.fcntl(reader, fcntl.F_SETPIPE_SZ, 4096)
+    writer = os.open(logs / "kinebox-000001.log", os.O_WRONLY | os.O_NONBLOCK)
+    os.write(writer, b"." * 4095 + b"\n")
+    os.close(writer)
+    with Box(tmp_path) as box:
+        box.wait_started()
+        with HealthWatch(box) as watch:
+            watch.wait_for("edge-a", "ok")
+            os.kill(box.pid("edge-a"), signal.SIGKILL)
+            box.wait_restarted("edge-a")
+            back = watch.wait_for("edge-a", "ok", box.pid("edge-a"))
+
+            def says_why() -> bool:
+                return HELD_UP in watch.wait_for("supervisor", "degraded", after_ns=back.t_ns).reason
+
+            until(says_why, "the supervisor's word about the disk")
+            told_ns = time.monotonic_ns()
+            fcntl.fcntl(reader, fcntl.F_SETPIPE_SZ, 1 << 20)
+            kept = os.read(reader, 1 << 20)
+            watch.wait_for("supervisor", "ok", after_ns=told_ns)
+        assert box.end() == 0
+        kept += os.read(reader, 1 << 20)
+    os.close(reader)
+    events = [msgspec.json.decode(line)["event"] for line in kept.splitlines()[1:]]
+    assert any(event.startswith("starting ") for event in events)
+    assert any(event.startswith("edge-a was ended by SIGKILL") for event in events)
+    assert events[-1] == "ended"
 
 
 def full_pipe() -> tuple[int, int]:
