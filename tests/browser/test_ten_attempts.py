@@ -83,7 +83,7 @@ def test_ten_attempts_are_seen_with_their_cues_their_replays_and_their_colours(
     tablets: Tablets, lesson: Path, tmp_path: Path
 ) -> None:
     true = read_attempts(lesson / ATTEMPTS_NAME)["pupil"]
-    with running(tmp_path, shipped=lesson) as box:
+    with running(tmp_path, lesson) as box:
         page = tablets(1280, 800, LIVE_PICTURE_MS)
         page.goto(f"http://127.0.0.1:{box.port}/")
         page.locator(".page[data-phase=live]").wait_for(timeout=_ROUND_MS)

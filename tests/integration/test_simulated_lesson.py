@@ -238,7 +238,7 @@ def test_a_rendered_lesson_plays_in_the_box(data: Path, tmp_path: Path) -> None:
     run = [sys.executable, "-m", "services.cli.main", "run", "--site", str(tmp_path / "site.toml"), "--data", str(ROOT / "build")]
     with (tmp_path / "output").open("wb") as output:
         process = subprocess.Popen(bound(run), cwd=ROOT, stdout=output, stderr=output)
-    box = Box(process, port)
+    box = Box(process, port, tmp_path)
     try:
         until(lambda: box.answers() or process.poll() is not None, "the page's server", 120)
         assert process.poll() is None, (tmp_path / "output").read_text()

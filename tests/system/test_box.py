@@ -1,7 +1,11 @@
-"""The box as it is shipped: real footage, real networks, real sockets, every process; and what is left when one is killed."""
+"""The box as it is shipped: real footage, real networks, real sockets, every process; and what is left when one is killed.
+
+Tests share one box of each footage, since a start costs more than most of what is looked at: those that end it come last.
+"""
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -16,20 +20,22 @@ import psutil
 import pytest
 from websockets.sync.client import ClientConnection, connect
 
+from edge.footage.sets import FOOTAGES, ONE_PERSON, TWO_PEOPLE
 from models.arrays import Float
 from models.messages.motion import JointState
 from models.skeleton import coco
 from services.tablet import motion_frame
 from services.tablet.motion_frame import MotionFrame
 from tests.acknowledged import Acknowledged
-from tests.installed import ROOT, require_footage, require_lesson, require_networks
+from tests.bench.running_box import processes
+from tests.installed import DATA, ROOT, require_footage, require_lesson, require_networks
 from tests.integration.waiting import until
 from tests.lifeline import bound
 from tests.ports import free_port
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(240)]
 
-SHIPPED = ROOT / "deploy/sites/footage"
+SITES = ROOT / "deploy/sites"
 STARTING_S = 120.0
 """A machine that has never compiled the kernels compiles them now."""
 POSTS = 8
@@ -38,10 +44,15 @@ POSTS = 8
 
 @dataclass
 class Box:
-    """A running box."""
+    """A running box; its folder has its site file."""
 
     process: subprocess.Popen[bytes]
     port: int
+    folder: Path
+
+    @property
+    def site(self) -> Path:
+        return self.folder / "site.toml"
 
     def status(self) -> dict[str, object]:
         with urllib.request.urlopen(f"http://127.0.0.1:{self.port}/api/status", timeout=5) as answer:
@@ -67,8 +78,8 @@ class Box:
 
 
 @contextmanager
-def running(folder: Path, more_site: str = "", shipped: Path = SHIPPED) -> Iterator[Box]:
-    data = require_footage() if shipped == SHIPPED else require_lesson()
+def running(folder: Path, shipped: Path, more_site: str = "") -> Iterator[Box]:
+    data = require_footage(FOOTAGES[shipped.name]) if shipped.name in FOOTAGES else require_lesson()
     require_networks()
     port = free_port()
     (folder / "rig.toml").write_bytes((shipped / "rig.toml").read_bytes())
@@ -77,7 +88,7 @@ def running(folder: Path, more_site: str = "", shipped: Path = SHIPPED) -> Itera
     command = [sys.executable, "-m", "services.cli.main", "run", "--site", str(folder / "site.toml"), "--data", str(data)]
     with (folder / "output").open("wb") as output:
         process = subprocess.Popen(bound(command), cwd=ROOT, stdout=output, stderr=output)
-    box = Box(process, port)
+    box = Box(process, port, folder)
     try:
         until(lambda: box.answers() or process.poll() is not None, "the page's server", STARTING_S)
         assert process.poll() is None, (folder / "output").read_text()
@@ -135,12 +146,24 @@ def heights_mm(frame: MotionFrame, name: str) -> Float:
 
 
 @pytest.fixture(scope="module")
-def shipped_box(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Box]:
-    """One box for those who leave it as they found it."""
-    with running(tmp_path_factory.mktemp("box")) as box:
+def shipped_box(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Box]:
+    """The box that plays a footage; pytest calls together those who name the same."""
+    folder = tmp_path_factory.mktemp("box")
+    with running(folder, SITES / request.param, f'[lessons]\nfolder = "{folder / "lessons"}"\n') as box:
         yield box
 
 
+def plays(*footages: str) -> pytest.MarkDecorator:
+    """The test is of the box that plays each of these."""
+    return pytest.mark.parametrize("shipped_box", footages, indirect=True)
+
+
+def kinebox(*words: str) -> "subprocess.CompletedProcess[str]":
+    command = [sys.executable, "-m", "services.cli.main", *words]
+    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=120, check=False)
+
+
+@plays(ONE_PERSON.name)
 def test_footage_becomes_a_figure_of_human_proportions_that_moves(shipped_box: Box) -> None:
     with tablet(shipped_box) as client:
         frames = [client.pose() for _ in range(20)]
@@ -155,6 +178,7 @@ def test_footage_becomes_a_figure_of_human_proportions_that_moves(shipped_box: B
     assert travelled.max() > 20
 
 
+@plays(ONE_PERSON.name)
 def test_a_camera_that_is_killed_is_seen_the_lesson_goes_on_and_it_comes_back(shipped_box: Box) -> None:
     box = shipped_box
     with tablet(box) as client:
@@ -169,20 +193,47 @@ def test_a_camera_that_is_killed_is_seen_the_lesson_goes_on_and_it_comes_back(sh
         until(lambda: box.camera("cam03")["used"] is True, "camera 3 back", STARTING_S)
 
 
-def test_the_supervisors_death_leaves_nothing_behind(tmp_path: Path) -> None:
-    with running(tmp_path) as box:
-        supervisor = psutil.Process(box.process.pid)
-        until(lambda: len(supervisor.children()) >= POSTS, "everybody started")
-        children = supervisor.children(recursive=True)
-        os.kill(box.process.pid, signal.SIGKILL)
-        gone, alive = psutil.wait_procs(children, timeout=30)
-        assert not alive
-        assert len(gone) == len(children)
+@plays(*FOOTAGES)
+def test_fusion_killed_in_a_lesson_costs_a_gap_and_both_segments_replay_bit_for_bit(shipped_box: Box) -> None:
+    box, site = shipped_box, ("--site", str(shipped_box.site))
+
+    def recorded(seconds: float, gaps: int) -> bool:
+        recording = box.status()["recording"]
+        return isinstance(recording, dict) and recording["recorded_s"] >= seconds and recording["gaps"] == gaps
+
+    with tablet(box) as client:
+        client.pose()
+    begun = kinebox("record", *site, "--detach", "--title", "With a fault")
+    assert begun.returncode == 0, begun.stderr
+    until(lambda: recorded(2.0, 0), "two seconds of the lesson", STARTING_S)
+    processes(psutil.Process(box.process.pid))["fusion"].kill()
+    until(lambda: recorded(5.0, 1), "the lesson to go on after a gap", STARTING_S)
+    ended = kinebox("record", *site, "--stop")
+    assert ended.returncode == 0, ended.stderr
+    assert "1 gap" in ended.stdout
+    (listed,) = json.loads(kinebox("lessons", *site, "--json").stdout)
+    assert (listed["state"], listed["segments"], listed["gaps"], listed["problem"]) == ("finished", 2, 1, "")
+    checked = kinebox("replay", listed["file"], "--check", "--data", str(DATA))
+    assert checked.returncode == 0, checked.stdout + checked.stderr
+    found = re.match(r"all (\d+) motions are equal bit for bit \(2 segments", checked.stdout)
+    assert found is not None, checked.stdout
+    assert int(found[1]) > 30, "a busy box gives out fewer"
 
 
-def test_sigterm_ends_everything_cleanly(tmp_path: Path) -> None:
-    with running(tmp_path) as box:
-        children = psutil.Process(box.process.pid).children(recursive=True)
-        box.process.terminate()
-        assert box.process.wait(30) == 0
-        assert not [child for child in children if child.is_running() and child.status() != psutil.STATUS_ZOMBIE]
+@plays(TWO_PEOPLE.name)
+def test_the_supervisors_death_leaves_nothing_behind(shipped_box: Box) -> None:
+    supervisor = psutil.Process(shipped_box.process.pid)
+    until(lambda: len(supervisor.children()) >= POSTS, "everybody started")
+    children = supervisor.children(recursive=True)
+    os.kill(supervisor.pid, signal.SIGKILL)
+    gone, alive = psutil.wait_procs(children, timeout=30)
+    assert not alive
+    assert len(gone) == len(children)
+
+
+@plays(ONE_PERSON.name)
+def test_sigterm_ends_everything_cleanly(shipped_box: Box) -> None:
+    children = psutil.Process(shipped_box.process.pid).children(recursive=True)
+    shipped_box.process.terminate()
+    assert shipped_box.process.wait(30) == 0
+    assert not [child for child in children if child.is_running() and child.status() != psutil.STATUS_ZOMBIE]

@@ -10,8 +10,8 @@ from edge.simulation.truth import truth_file
 from models.arrays import Float
 from models.messages.motion import JointState
 from models.skeleton import coco
-from tests.installed import ROOT, require_lesson
-from tests.system.test_box import Tablet, limb_lengths_m, running, tablet
+from tests.installed import require_lesson
+from tests.system.test_box import SITES, Tablet, limb_lengths_m, running, tablet
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(240)]
 
@@ -36,7 +36,7 @@ def seen_figures(client: Tablet) -> tuple[Float, Float]:
 
 def test_the_simulated_lesson_becomes_a_figure_with_the_limbs_of_its_pupil(tmp_path: Path) -> None:
     data = require_lesson()
-    with running(tmp_path, shipped=ROOT / "deploy/sites/simulated") as box, tablet(box) as client:
+    with running(tmp_path, SITES / "simulated") as box, tablet(box) as client:
         lengths_m, floor_mm = seen_figures(client)
     truth = truth_file.read(data / FOLDER / SHIPPED / TRUTH_NAME).cameras["cam01"].coco_m[:, 0]
     true_m = np.median([[np.linalg.norm(joints[a] - joints[b]) for a, b in coco.LIMBS.values()] for joints in truth], axis=0)
