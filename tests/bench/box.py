@@ -227,9 +227,7 @@ def main() -> int:
     if arguments.half_seconds > 0:
         one_core = {min(os.sched_getaffinity(0))}
         report.add(measure(arguments.site, arguments.data, arguments.half_seconds, WARM_S, one_core), prefix="half_quota.")
-    report.show(BARS | HALF_BARS if arguments.half_seconds > 0 else BARS)
-    print(f"written to {report.write(arguments.data)}")
-    return 1 if report.missed else 0
+    return report.conclude(BARS | HALF_BARS if arguments.half_seconds > 0 else BARS, arguments.data)
 
 
 if __name__ == "__main__":

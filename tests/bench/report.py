@@ -102,6 +102,14 @@ class Report:
         value, (sign, limit) = self.figures.get(name), bar
         return value is not None and _COMPARISONS[sign](value, limit)
 
+    def conclude(self, bars: Mapping[str, tuple[str, float]], data: Path) -> int:
+        """Show and write everything and name what was missed; returns the exit code of the benchmark, 1 if a bar was missed."""
+        self.show(bars)
+        print(f"written to {self.write(data)}")
+        if self.missed:
+            print(f"missed: {', '.join(self.missed)}")
+        return 1 if self.missed else 0
+
     def show(self, bars: Mapping[str, tuple[str, float]]) -> None:
         """Print the figures, those in `bars` as met or missed, and the tables."""
         self.bars = bars

@@ -83,8 +83,8 @@ def _cpu_of_children_s() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def main() -> None:
-    """Measure, print, write."""
+def main() -> int:
+    """Measure, print, write; returns the exit code, 1 if a bar was missed."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--seconds", type=float, default=SECONDS, help="of the lesson; the figures of record are of 24")
@@ -92,9 +92,8 @@ def main() -> None:
     report = Report("bench-simulate")
     with tempfile.TemporaryDirectory(dir=options.data) as folder:
         report.add(cost(options.seconds, Path(folder), options.data))
-    report.show(BARS if options.seconds == SECONDS else {})
-    print(f"written to {report.write(options.data)}")
+    return report.conclude(BARS if options.seconds == SECONDS else {}, options.data)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

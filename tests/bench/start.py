@@ -47,8 +47,8 @@ def _listens(port: int) -> bool:
         return probe.connect_ex(("127.0.0.1", port)) == 0
 
 
-def main() -> None:
-    """Measure, print, write."""
+def main() -> int:
+    """Measure, print, write; returns the exit code, 1 if a bar was missed."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--site", type=Path, required=True)
     parser.add_argument("--data", type=Path, required=True)
@@ -69,9 +69,8 @@ def main() -> None:
             time.sleep(3)  # the box that ends shall not slow the one that starts
         browser.close()
     report.add({"start_s.median": statistics.median(taken), "start_s.min": min(taken), "start_s.max": max(taken)})
-    report.show(BARS)
-    print(f"written to {report.write(arguments.data)}")
+    return report.conclude(BARS, arguments.data)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -32,7 +32,7 @@ _BARS: Final = {f"twin.{name}_gap_pct": ("within", BAR_PCT) for name in ("mpjpe"
 
 
 def main() -> int:
-    """Fit, judge, print, write; returns the exit code."""
+    """Fit, judge, print, write; returns the exit code, 1 if a bar was missed."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--seeds", type=int, default=COUNT, help="lessons of each kind")
@@ -47,9 +47,7 @@ def main() -> int:
         return 2
     report.add(agreement.figures())
     report.tables += agreement.tables()
-    report.show(_BARS)
-    print(f"written to {report.write(options.data)}")
-    return 0
+    return report.conclude(_BARS, options.data)
 
 
 def judged(options: argparse.Namespace) -> Agreement:

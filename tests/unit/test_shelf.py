@@ -8,10 +8,11 @@ import pytest
 from models.arrays import Float
 from services.fusion.views import Views
 from tests.bench.shelf import __main__ as bench
+from tests.bench.shelf import measure as measuring
 from tests.bench.shelf.data import PARTS, Shelf, as_shelf, load_shelf, right_parts
 from tests.bench.shelf.follow import PictureTracks, follow
 from tests.bench.shelf.greedy import greedy_persons
-from tests.bench.shelf.measure import measure
+from tests.bench.shelf.measure import ALL_CAMERAS, FEW_CAMERAS, measure
 from tests.bench.shelf.openpose import JOINTS, LIMBS, Picture, group
 from tests.installed import ROOT
 from tests.synthetic.gym import ring_rig
@@ -129,6 +130,19 @@ def test_without_the_data_one_line_says_so(
     assert "SHARED=" in line
 
 
+@pytest.mark.parametrize(("ours", "code"), [(98.0, 1), (99.0, 0)], ids=["3 points", "4 points"])
+def test_too_small_a_margin_over_the_baseline_ends_the_command_with_1(
+    ours: float, code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["shelf", "--data", str(tmp_path)])
+    monkeypatch.setattr(bench, "load_shelf", lambda _: Shelf(RIG, [[]], []))
+    monkeypatch.setattr(measuring, "warm_up", lambda: None)
+    monkeypatch.setattr(measuring, "parts", lambda *_: {})
+    monkeypatch.setattr(measuring, "measure", lambda *to: {f"pcp.limbs{to[-1]}": ours, f"baseline.pcp.limbs{to[-1]}": 95.0})
+    assert bench.main() == code
+    assert ("missed: margin.cams024.limbs" in capsys.readouterr().out) == bool(code)
+
+
 @pytest.fixture
 def shelf_data() -> Shelf:
     folder = ROOT.parent / "shared/data/shelf_dev"
@@ -139,10 +153,11 @@ def shelf_data() -> Shelf:
 
 @pytest.mark.shared_data
 @pytest.mark.slow
-def test_on_the_shelf_limbs_are_right_and_nobody_is_mixed_up(shelf_data: Shelf) -> None:
+def test_on_the_shelf_limbs_are_right_by_more_than_the_baselines_and_nobody_is_mixed_up(shelf_data: Shelf) -> None:
     grouped = [[group(view) for view in pictures] for pictures in shelf_data.pictures]
-    for cameras, least in (((0, 1, 2, 3, 4), 98.0), ((0, 2, 4), 96.5)):
+    # The margins are a little less than what is held, 0.44 and 1.70: the benchmark's bar of 4 points is not.
+    for cameras, least, margin in ((ALL_CAMERAS, 98.5, 0.3), (FEW_CAMERAS, 97.0, 1.5)):
         figures = measure(shelf_data, grouped, cameras, "")
         assert figures["pcp.limbs"] >= least
-        assert figures["pcp.limbs"] > figures["baseline.pcp.limbs"]
+        assert figures["pcp.limbs"] - figures["baseline.pcp.limbs"] >= margin
         assert figures["identity_switches"] == 0

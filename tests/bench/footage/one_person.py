@@ -8,6 +8,7 @@ the triangulation's alone.
 
 import argparse
 import statistics
+import sys
 import tempfile
 import tomllib
 from dataclasses import replace
@@ -57,8 +58,8 @@ BARS = {
 }
 
 
-def main() -> None:
-    """Measure, print, write."""
+def main() -> int:
+    """Measure, print, write; returns the exit code, 1 if a bar was missed."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, required=True)
     data = parser.parse_args().data
@@ -98,8 +99,7 @@ def main() -> None:
         own_s += [fuse(rig, events, frames / RATE_HZ).cpu_s for _ in range(PASSES)]
     report.add(limbs_beside(ours, peers[0]))
     report.add(speeds(statistics.median(own_s), statistics.median(peer.cpu_ms for peer in peers), frames))
-    report.show(BARS)
-    print(f"written to {report.write(data)}")
+    return report.conclude(BARS, data)
 
 
 def solve(rig: Rig, events: list[Event], frames: int) -> Float:
@@ -200,4 +200,4 @@ def suffixed(figures: dict[str, float], suffix: str) -> dict[str, float]:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

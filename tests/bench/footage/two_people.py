@@ -7,6 +7,7 @@ given for each camera: it says on whom the network's keypoints are, not how good
 """
 
 import argparse
+import sys
 import tomllib
 from itertools import pairwise
 from pathlib import Path
@@ -41,8 +42,8 @@ BARS = {
 }
 
 
-def main() -> None:
-    """Measure, print, write."""
+def main() -> int:
+    """Measure, print, write; returns the exit code, 1 if a bar was missed."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, required=True)
     data = parser.parse_args().data
@@ -67,8 +68,7 @@ def main() -> None:
             **{f"reprojection_px.{name}": float(np.nanmedian(distance[:, i])) for i, name in enumerate(rig.names)},
         }
         report.add(suffixed(figures, suffix))
-    report.show(BARS)
-    print(f"written to {report.write(data)}")
+    return report.conclude(BARS, data)
 
 
 def drawn(path: Path) -> list[dict[str, Any]]:
@@ -116,4 +116,4 @@ def identity_switches(rig: Rig, found: Fused, pictures: list[dict[str, Any]]) ->
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

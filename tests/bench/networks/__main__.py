@@ -60,7 +60,7 @@ def corrections(data: Path, pupils: int) -> int:
 
 
 def bench(data: Path, pupils: int) -> int:
-    """All networks on the test pupils."""
+    """All networks on the test pupils; returns the exit code, 1 if a bar was missed."""
     seeds = seeds_of("test", pupils)
     report = Report("bench-networks", seeds)
     plans = [plan_of(seed, "test") for seed in seeds]
@@ -75,9 +75,7 @@ def bench(data: Path, pupils: int) -> int:
     overall = biases(thunder, [])
     report.add({f"bias_mm.{joint}": float((bias.mm**2).sum() ** 0.5) for joint, bias in overall.items()})
     report.tables += bias_tables(thunder, overall)
-    report.show(BARS)
-    print(f"written to {report.write(data)}")
-    return 0
+    return report.conclude(BARS, data)
 
 
 def figures(found: Sequence[Errors], network: Name, seed: int) -> dict[str, float]:

@@ -157,9 +157,7 @@ def on_rendered(options: argparse.Namespace) -> int:
     report.tables.append(by_pupil_table(measured[LIVE.name]))
     if not options.no_peers:
         add_peers(report, measured, options.data, full=options.full)
-    report.show({})
-    print(f"written to {report.write(options.data)}")
-    return 0
+    return report.conclude({}, options.data)
 
 
 def add_peers(report: Report, measured: Mapping[str, Sequence[Measured]], data: Path, *, full: bool) -> None:
@@ -180,8 +178,7 @@ def on_dataset(options: argparse.Namespace) -> int:
             f"{options.path} is no folder; name that of your files: make bench-reconstruct DATASET={options.dataset} PATH=folder"
         )
     if options.dataset == "shelf":
-        on_shelf.run(options.path, options.data)
-        return 0
+        return on_shelf.run(options.path, options.data)
     lessons = DATASETS[options.dataset](options.path, options.seconds)
     report = Report(f"bench-reconstruct-{options.dataset}")
     every, live = (
@@ -195,9 +192,7 @@ def on_dataset(options: argparse.Namespace) -> int:
         report.add(dataset_figures(results, suffix))
         report.rows += [row for result in results for row in rows_of(result)]
         report.tables.append(by_action_table(results, results[0].way))
-    report.show({})
-    print(f"written to {report.write(options.data)}")
-    return 0
+    return report.conclude({}, options.data)
 
 
 if __name__ == "__main__":

@@ -29,15 +29,14 @@ PEOPLE_MAX: Final = 5
 _SHOWN_EVERY: Final = 50
 
 
-def run(folder: Path, data: Path) -> None:
-    """Measure, print, write.
+def run(folder: Path, data: Path) -> int:
+    """Measure, print, write; returns the exit code.
 
     Raises:
         UserError: a file is missing or foreign, or the networks are not installed.
     """
     if (folder / "ground_truth.json").is_file():
-        candidates.run(load_shelf(folder), data)
-        return
+        return candidates.run(load_shelf(folder), data)
     film = shelf.load(folder)
     warm_up()
     cv2.setNumThreads(1)
@@ -46,8 +45,7 @@ def run(folder: Path, data: Path) -> None:
     known = Shelf(film.rig, [], film.truth)
     report = Report("bench-reconstruct-shelf")
     report.add(candidates.measure(known, grouped, tuple(range(len(film.rig))), ""))
-    report.show({})
-    print(f"written to {report.write(data)}")
+    return report.conclude({}, data)
 
 
 def everyone(film: ShelfFilm, networks: Networks) -> list[list[list[Grouped]]]:

@@ -24,8 +24,8 @@ BARS = {
 Persons = list[dict[int, Float]]
 
 
-def run(shelf: Shelf, data: Path) -> None:
-    """Measure, print, write."""
+def run(shelf: Shelf, data: Path) -> int:
+    """Measure, print, write; returns the exit code, 1 if a bar was missed."""
     warm_up()
     report = Report("bench-shelf")
     began_s = time.thread_time()
@@ -36,8 +36,7 @@ def run(shelf: Shelf, data: Path) -> None:
     report.figures["pcp.cams024"] = report.figures["pcp.limbs.cams024"]
     report.figures["margin.cams024.limbs"] = report.figures["pcp.limbs.cams024"] - report.figures["baseline.pcp.limbs.cams024"]
     report.rows += [{"part": name, **row} for name, row in parts(shelf, grouped).items()]
-    report.show(BARS)
-    print(f"written to {report.write(data)}")
+    return report.conclude(BARS, data)
 
 
 def measure(shelf: Shelf, grouped: list[list[list[Grouped]]], cameras: tuple[int, ...], suffix: str) -> dict[str, float]:

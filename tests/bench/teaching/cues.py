@@ -180,7 +180,7 @@ def _percent(hits: Iterable[bool]) -> float:
 
 
 def main() -> int:
-    """Measure, print, write; returns the exit code."""
+    """Measure, print, write; returns the exit code, 1 if a bar was missed."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, default=Path("build"))
     parser.add_argument("--split", choices=SPLITS, default="development", help="test only to measure, never to tune")
@@ -196,9 +196,7 @@ def main() -> int:
     report = Report(f"cues-{options.on}-{options.split}", seeds)
     report.add(figures(results))
     report.tables += [*confusion(results), response(results)]
-    report.show(BARS)
-    print(f"written to {report.write(options.data)}")
-    return 0
+    return report.conclude(BARS, options.data)
 
 
 if __name__ == "__main__":

@@ -271,7 +271,7 @@ def _table(title: str, columns: tuple[str, ...], groups: dict[str, list[Compared
 
 
 def main() -> int:
-    """Measure, print, write; returns the exit code."""
+    """Measure, print, write; returns the exit code, 1 if a bar was missed."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--shared", type=Path, help="folder of the measurement data, for the drop jumps over a force plate")
@@ -303,9 +303,7 @@ def main() -> int:
     else:
         print("drop jumps: the measurement data is not there; no figure of the force plate")
         held = {name: bar for name, bar in _BARS.items() if name != _FORCE_PLATE}
-    report.show(held)
-    print(f"written to {report.write(options.data)}")
-    return 0
+    return report.conclude(held, options.data)
 
 
 if __name__ == "__main__":
