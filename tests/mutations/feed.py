@@ -62,6 +62,12 @@ class FeedBus:
         self.newest: dict[str, bytes] = {}
         self.healths: list[Health] = []
 
+    @property
+    def refused(self) -> int:
+        """How many messages the process has said that it could not read."""
+        troubles = [trouble for health in self.healths for trouble in health.troubles if trouble.code == "messages_refused"]
+        return sum(int(trouble.words.split()[0]) for trouble in troubles)
+
     def publish(self, topic: str, payload: bytes) -> None:
         self.published[topic] += 1
         self.newest[topic] = payload

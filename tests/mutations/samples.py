@@ -1,4 +1,4 @@
-"""Valid messages of every topic of a small room, of which mutants are made and which must still be understood afterwards."""
+"""Valid messages of every topic of a small room and of its tablets: of them mutants are made, and they must be understood later."""
 
 import time
 from typing import Literal
@@ -25,6 +25,7 @@ from models.messages.observation import Crop, Observation, Person
 from models.messages.pupil import NOBODY, PupilCorrection, PupilCorrections, PupilTurn
 from models.messages.trouble import Trouble
 from models.skeleton import coco
+from services.tablet.messages import Ack, Anew, Choose, Correction, Ping, Turn, Wish
 from tests.synthetic.gym import ring_rig
 from tests.synthetic.person import Person as Pupil
 
@@ -163,3 +164,14 @@ def by_topic() -> dict[str, list[bytes]]:
         codec.encode(RememberedFeedback(None, 0)),
     ]
     return found
+
+
+CLIENT_MESSAGES: tuple[Ack | Ping | Wish, ...] = (
+    Ack(type="ack", motions=1, statuses=1),
+    Ping(type="ping", id=7),
+    Choose(type="choose", activity="long_jump"),
+    Turn(type="turn", pupil="7"),
+    Correction(type="correction", attempt=1, pupil="7"),
+    Anew(type="anew"),
+)
+"""What a page sends to the box, of every kind."""

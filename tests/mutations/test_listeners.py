@@ -17,10 +17,11 @@ from services.doctor.listen import Heard
 from services.lesson.remote import Remote
 from services.supervisor.bus_link import unread_beats, unread_healths
 from services.support.heartbeat import Beat
+from services.tablet.messages import ClientMessage
 from tests.mutations import test_mutations as test_mutations  # noqa: PLC0414 - what it asks for is counted, too
 from tests.mutations.consumers import ASKED, patterns, received, topics_of
 from tests.mutations.feed import COUNTS, GROWTH_MB, Growth, deliveries
-from tests.mutations.samples import by_topic, healths, motion
+from tests.mutations.samples import CLIENT_MESSAGES, by_topic, healths, motion
 
 SUPERVISOR = "services.supervisor.bus_link"
 MESSAGES = [topic for topic in by_topic() if not matches(topics.ALL_BEATS, topic)]
@@ -121,6 +122,11 @@ def test_every_topic_has_samples_of_which_mutants_are_made(name: str) -> None:
 def test_both_kinds_of_motion_have_samples() -> None:
     kinds = get_args(inspect.get_annotations(Motion, eval_str=True)["kind"])
     assert {topics.motion(kind) for kind in kinds} <= by_topic().keys()
+
+
+def test_every_kind_of_message_that_a_page_may_send_has_a_sample_of_which_mutants_are_made() -> None:
+    union, _ = get_args(ClientMessage)
+    assert {type(message) for message in CLIENT_MESSAGES} == set(get_args(union))
 
 
 def test_everybody_who_receives_is_tested_with_everything_that_he_receives() -> None:

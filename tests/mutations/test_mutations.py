@@ -7,9 +7,10 @@ that nobody who receives is left out. No crash, no growth, every refusal counted
 
 import json
 import random
+import re
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from itertools import chain, islice
 from pathlib import Path
@@ -41,6 +42,7 @@ from services.fusion.warm_up import warm_up
 from services.lesson.folder_lock import lock
 from services.lesson.process import RecorderLoop
 from services.support.cpu import CpuMeter
+from services.tablet import audience
 from services.tablet.process import decoded
 from services.tablet.room_state import RoomState
 from services.tablet.server import TabletServer
@@ -49,11 +51,13 @@ from tests.fake_networks import FakeDetector, FakeEstimate
 from tests.integration.waiting import until
 from tests.mutations.consumers import topics_of
 from tests.mutations.feed import COUNTS, GROWTH_MB, FeedBus, Growth, context_of, deliveries
-from tests.mutations.samples import JOINTS_M, RIG, control, healths, log, motion, observation
+from tests.mutations.samples import CLIENT_MESSAGES, JOINTS_M, RIG, control, healths, log, motion, observation
 from tests.small_video import plain_picture, video_of
 from tests.synthetic.gym import T0_NS, Gym, knocked
 from tests.taught import performance, some
 
+ENDLESS = "x" * 5000
+"""Longer than any message of a page's may be, which costs the connection."""
 GREY = video_of([plain_picture(128)] * 2, RIG.names[0])
 
 
@@ -74,18 +78,17 @@ def test_fusion_survives_and_then_finds_the_pupil(topic: str, count: int, tmp_pa
     stop, growth = threading.Event(), Growth()
 
     def whole() -> bool:
-        """The pupil is seen, and fusion has told of what it refused."""
+        """The pupil is seen, and fusion has told of what it refused, which it does once a second."""
         live = codec.decode(bus.newest[topics.motion("live")], Motion) if topics.motion("live") in bus.newest else None
-        return live is not None and bool((live.states == JointState.SEEN).all()) and time.monotonic() > told_s
+        return live is not None and bool((live.states == JointState.SEEN).all()) and bus.refused > count // 2
 
-    told_s = time.monotonic() + 2.5
     bus = FeedBus(chain(deliveries(topic, count, growth), filmed(whole)), stop)
     loop = FusionLoop(context_of("fusion", bus, stop, tmp_path), CpuMeter())
     loop.run()
     seen = codec.decode(bus.newest[topics.motion("live")], Motion)
     assert (seen.states == JointState.SEEN).all()
     assert abs(seen.joints_m - JOINTS_M).max() < 0.1
-    assert sum(health.fusion.rejected for health in bus.healths if health.fusion is not None) > 0
+    assert bus.refused > count // 2
     assert growth.mb < GROWTH_MB
     assert strangers_after_a_knock(loop) == (RIG.names[0],)
 
@@ -170,13 +173,9 @@ def test_the_pages_server_survives_and_then_shows_what_is_true(topic: str, count
 
 
 @pytest.mark.parametrize("count", COUNTS)
-def test_the_tablets_socket_survives_and_then_gets_its_figures(count: int) -> None:
-    texts = (
-        b'..{"type":"ack","motions":1,"statuses":1}',
-        b'..{"type":"ping","id":7}',
-        b'..{"type":"turn","pupil":"7"}',
-        b'..{"type":"correction","attempt":1,"pupil":"7"}',
-    )
+def test_the_tablets_socket_survives_and_then_gets_its_figures(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(audience, "READ_HZ", 1e6)  # At a page's own pace most mutants would wait until the socket is closed.
+    texts = [message.model_dump_json().encode() for message in CLIENT_MESSAGES]
     chance, growth = random.Random(3), Growth()  # noqa: S311 - no secret
     with Room() as room:
         url = f"ws://127.0.0.1:{room.port}/ws"
@@ -188,18 +187,20 @@ def test_the_tablets_socket_survives_and_then_gets_its_figures(count: int) -> No
                     for message in islice(pending, count - sent):
                         sent += 1
                         socket.send(message)
+                        if message == ENDLESS:
+                            list(socket)  # until it is closed: what is sent meanwhile would reach nobody
                         if sent % 100 == 0:
                             _drain(socket)  # a client that never reads would soon be sent nothing
                         if sent == count // 10:
                             growth.settled()
                 except ConnectionClosed:
-                    continue  # the answer to an endless message
+                    continue
         with connect(url, compression=None) as socket:
             until(lambda: isinstance(socket.recv(timeout=30), bytes), "a figure")
             socket.send('{"type":"ping","id":5}')
             until(lambda: '"pong"' in str(socket.recv(timeout=30)), "an answer")
         with connect(url, compression=None) as socket:
-            until(lambda: _refusals(socket.recv(timeout=30)) > 0, "the refusals in the status")
+            until(lambda: _refusals(socket.recv(timeout=30)) > count // 2, "the refusals in the status")
     assert growth.mb < GROWTH_MB
 
 
@@ -214,7 +215,10 @@ def _drain(socket: ClientConnection) -> None:
             socket.recv(timeout=0)
 
 
-def _json_mutants(texts: tuple[bytes, ...], count: int, chance: random.Random) -> Iterator[str | bytes]:
+_KEY_OR_VALUE = re.compile(rb'"[^"]*"|\d+')
+
+
+def _json_mutants(texts: Sequence[bytes], count: int, chance: random.Random) -> Iterator[str | bytes]:
     values = [
         "-1",
         "1e999",
@@ -231,7 +235,7 @@ def _json_mutants(texts: tuple[bytes, ...], count: int, chance: random.Random) -
         "0.5",
     ]
     for _ in range(count):
-        text = chance.choice(texts)[2:]
+        text = chance.choice(texts)
         match chance.randrange(5):
             case 0:
                 at = chance.randrange(len(text))
@@ -239,12 +243,12 @@ def _json_mutants(texts: tuple[bytes, ...], count: int, chance: random.Random) -
             case 1:
                 yield text[: chance.randrange(len(text))].decode()
             case 2:
-                yield text.decode().replace(chance.choice(("1", "7", '"ack"', '"motions"')), chance.choice(values))
+                begin, end = chance.choice([found.span() for found in _KEY_OR_VALUE.finditer(text)])
+                yield text[:begin].decode() + chance.choice(values) + text[end:].decode()
             case 3:
                 yield chance.randbytes(chance.choice((0, 1, 100, 4000)))
             case _:
-                # Now and then one that is longer than any may be, which costs the connection.
-                yield chance.choice(values) if chance.random() < 0.999 else "x" * 5000
+                yield chance.choice(values) if chance.random() < 0.999 else ENDLESS
 
 
 @pytest.mark.parametrize("count", COUNTS)
@@ -265,7 +269,7 @@ def test_the_recorder_survives_and_then_records(topic: str, count: int, tmp_path
         RecorderLoop(context_of("recorder", bus, stop, tmp_path), tmp_path / "lessons").run()
     recorders = [health.recorder for health in bus.healths if health.recorder is not None]
     assert recorders[-1].title == "after all that"
-    assert any(trouble.code == "messages_refused" for health in bus.healths for trouble in health.troubles)
+    assert bus.refused > count // 2
     assert bus.published[topics.segment_request()] > 0
     assert growth.mb < GROWTH_MB
 
@@ -291,5 +295,5 @@ def test_the_evaluation_survives_and_then_finds_the_attempt_that_was_asked_for(t
     EvaluationLoop(context_of("evaluation", bus, stop, tmp_path), some("squat", "long_jump")).run()
     told = codec.decode(bus.newest[topics.feedback()], Feedback)
     assert (told.action, told.by, told.pupil) == ("squat", "chosen", "7")
-    assert sum(health.evaluation.rejected for health in bus.healths if health.evaluation is not None) > 0
+    assert bus.refused > count // 2
     assert growth.mb < GROWTH_MB

@@ -65,7 +65,7 @@ def test_whatever_reaches_the_writer_the_lessons_are_whole(count: int, tmp_path:
         loop.run()
         ended_ns = time.monotonic_ns()
     assert growth.mb < GROWTH_MB
-    assert any("could not be read" in health.reason for health in bus.healths)
+    assert bus.refused > count // 4, "many mutants can be read as a part"
     finished = sorted(folder.glob("*.mcap"))
     assert len(finished) == len(range(0, count, LESSON_LENGTH)), "a mutant ended a lesson"
     assert not list(folder.glob("*.part"))
