@@ -6,7 +6,7 @@ from models.messages.health import MachineHealth
 from models.messages.trouble import MachineCode, Trouble
 
 DISK_FULL_MIB = 200.0
-"""A lesson of 45 minutes takes up to 150 MB; below this the next one does not fit."""
+"""A lesson of 45 minutes takes up to 175 MB; below this the next one does not fit."""
 DISK_LOW_MIB = 2000.0
 """Room for a dozen lessons."""
 MEMORY_LOW_MIB = 250.0
