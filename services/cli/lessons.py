@@ -14,6 +14,8 @@ from services.cli.duration import clock
 from services.cli.printed import print_for_programs
 from services.lesson.index import NAME, LessonIndex, LessonRow
 from services.lesson.layout import PART_SUFFIX, SUFFIX
+from services.lesson.lesson_file import ENDED_SUFFIX
+from services.lesson.lesson_reader import FINISHING
 from services.lesson.local_time import local_time
 from services.lesson.readable_names import readable
 from services.logs.printable import printable
@@ -76,7 +78,7 @@ def find(lesson: str, folder: Path) -> Path:
     path = Path(lesson)
     if path.exists() or path.suffix == SUFFIX or len(path.parts) > 1:
         return path
-    for suffix in (SUFFIX, PART_SUFFIX):
+    for suffix in (SUFFIX, PART_SUFFIX, ENDED_SUFFIX):
         if (folder / f"{lesson}{suffix}").is_file():
             return folder / f"{lesson}{suffix}"
     raise UserError(f"no lesson '{lesson}' in {folder}; 'kinebox lessons' lists what there is")
@@ -90,8 +92,8 @@ def delete(lesson: str, folder: Path, *, sure: bool) -> None:
     """
     file = folder / f"{lesson}{SUFFIX}"
     if Path(lesson).name != lesson or not file.is_file():
-        if (folder / f"{Path(lesson).name}{PART_SUFFIX}").is_file():
-            raise UserError(f"lesson '{lesson}' is not finished; end its recording, or start KineBox, which recovers it")
+        if any((folder / f"{Path(lesson).name}{suffix}").is_file() for suffix in (PART_SUFFIX, ENDED_SUFFIX)):
+            raise UserError(f"lesson '{lesson}' is not finished; {FINISHING}")
         raise UserError(f"no lesson '{lesson}' in {folder}; 'kinebox lessons' lists what there is")
     if not sure and not typer.confirm(f"Remove {printable(str(file))} for good?"):
         typer.echo("nothing was removed")

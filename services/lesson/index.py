@@ -47,7 +47,7 @@ class LessonRow:
         bytes: of the file.
         gaps: interruptions.
         segments: stretches that replay in one go.
-        state: "finished"; "recording"; "unfinished", which was being recorded when its recorder died; "damaged".
+        state: "finished"; "recording"; "unfinished", of which the recorder died or the disk was full at its end; "damaged".
         problem: what a person is told who opens it; empty if nothing is wrong.
         changed_ns: when the file was changed last, by which a changed file is known; 0 of one that could not be read for a reason
             that may pass without a change of the file: it is read each time.

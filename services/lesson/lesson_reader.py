@@ -25,9 +25,13 @@ from services.lesson.lesson_header import HeaderError, LessonHeader, NewerFormat
 from services.lesson.mcap_records import DamageError, OpenChunk, open_chunk, parse, walk
 from services.lesson.readable_names import is_readable, readable
 
+FINISHING = (
+    "end its recording, or see what 'kinebox doctor' says of it: KineBox finishes what a crash left when it starts, "
+    "and what a full disk left once there is room"
+)
 _RECOVER = (
-    f"give it a name that ends with '{PART_SUFFIX}', in the folder of lessons, and start KineBox: all before that is recovered, "
-    "and the damaged file is kept"
+    f"give it a name that ends with '{PART_SUFFIX}', in the folder of lessons, and start KineBox anew: all before that is "
+    "recovered, and the damaged file is kept"
 )
 
 
@@ -167,7 +171,7 @@ def open_lesson(path: Path) -> Lesson:
         UserError: there is none, it is no lesson, of a newer KineBox, still being written, or its beginning is damaged.
     """
     if path.name.endswith(PART_SUFFIX):
-        raise UserError(f"lesson {path} is not finished; end its recording, or start KineBox, which recovers what a crash left")
+        raise UserError(f"lesson {path} is not finished; {FINISHING}")
     try:
         require_regular(path.stat())
         file = path.open("rb")

@@ -60,7 +60,7 @@ class RecorderLoop:
         self._left = Left(folder)
         with getting_ready(context.name, self._bus, "the lesson that was cut short is read"):
             unfinished = self._left.cut_short(context.start_ns)
-        self._recorder = Recorder(folder, context.site.lessons, self._header, context.start_ns, unfinished)
+        self._recorder = Recorder(folder, context.site.lessons, self._header, context.start_ns, self._left, unfinished)
         self._asking = Asking()
         self._told = self._recorder.health()
         self._stand_in = HealthReporter(context.name, context.bus, ResourceMeter())
@@ -68,10 +68,10 @@ class RecorderLoop:
     def run(self) -> None:
         """Take what comes; ask fusion for its log while recording; once a second, say how things are.
 
-        Beside that, lessons of other runs are completed: nobody who is in the room waits for them.
+        Beside that, lessons of other runs and those that could not be finished are completed: nobody in the room waits for them.
         """
         self._bus.declare_alive(topics.alive(self._context.name))
-        beside = threading.Thread(target=self._left.complete, args=(self._context.stop,), name="recovery", daemon=True)
+        beside = threading.Thread(target=self._left.keep_completing, args=(self._context.stop,), name="recovery", daemon=True)
         beside.start()
         with DiskWait(self._disk_waits) as disk:
             try:
@@ -118,7 +118,7 @@ class RecorderLoop:
     def _second_passed(self) -> None:
         self._recorder.look_after()
         refused = messages_refused(self._rejected) if self._rejected else None
-        troubles = tuple(filter(None, (self._recorder.trouble, refused)))
+        troubles = tuple(filter(None, (self._recorder.trouble, self._left.trouble, refused)))
         self._rejected = 0
         self._told = self._recorder.health()
         self._reporter.report("degraded" if troubles else "ok", troubles, recorder=self._told)

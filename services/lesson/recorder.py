@@ -1,8 +1,8 @@
 """The recorder without its bus: lessons begin and end, parts of fusion's log are written, trouble is told.
 
 A lesson ends when a person says so, when the box ends, and when the disk is full or broken or the file is taken away: then it is
-finished as well as it can be, and the box goes on. A lesson that was cut short by the recorder's own death is gone on with, without
-a gap as long as fusion still has what was missed.
+finished as well as it can be, and the box goes on. What cannot be finished is handed over to `recovery.py`, which tries it again.
+A lesson that was cut short by the recorder's own death is gone on with, without a gap as long as fusion still has what was missed.
 """
 
 import datetime as dt
@@ -26,8 +26,9 @@ from services.lesson.following import Following
 from services.lesson.free_names import numbered
 from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX
-from services.lesson.lesson_file import LessonWriter
+from services.lesson.lesson_file import LessonWriter, lesson_of
 from services.lesson.lesson_header import LessonHeader
+from services.lesson.recovery import Left
 from services.support.machine import free_disk_mib
 
 AUTOMATIC_TITLE = "Recorded automatically"
@@ -61,6 +62,7 @@ class Recorder:
         config: of the site.
         header: the header of a lesson of this title that begins now.
         run_ns: CLOCK_MONOTONIC at the start of this run of the box.
+        left: takes a lesson that cannot be finished, and tries it again.
         unfinished: a lesson to go on with; None if there is none.
         clock_ns: CLOCK_MONOTONIC.
     """
@@ -71,6 +73,7 @@ class Recorder:
         config: LessonsConfig,
         header: Callable[[str], LessonHeader],
         run_ns: int,
+        left: Left,
         unfinished: LessonWriter | None = None,
         clock_ns: Callable[[], int] = time.monotonic_ns,
     ) -> None:
@@ -78,10 +81,13 @@ class Recorder:
         self._config = config
         self._header = header
         self._run_ns = run_ns
+        self._left = left
         self._clock_ns = clock_ns
         by_itself = config.automatic and not told_to_stop.is_noted(folder, run_ns)
         self._automatic_ns: int | None = clock_ns() if by_itself else None
         self._ended: Trouble | None = None
+        self._ended_until = ""
+        """The lesson with whose completion `_ended` is over; empty if only another lesson ends it."""
         self._running: _Running | None = None
         self._lock: BinaryIO | None = None
         if unfinished is not None:
@@ -104,7 +110,7 @@ class Recorder:
         except UserError as error:
             self._trouble(f"no lesson was begun: {error}", "")
             return
-        self._ended = None
+        self._ended, self._ended_until = None, ""
         self._begin(writer, asked_ns=asked_ns)
         log.info("lesson begins", lesson=_name(writer), title=title)
 
@@ -122,7 +128,7 @@ class Recorder:
             self._automatic_ns = None
             self._note_wish()
         if self._running is not None:
-            self._ended = None
+            self._ended, self._ended_until = None, ""
         self._finish()
 
     def close(self) -> None:
@@ -160,6 +166,8 @@ class Recorder:
         """Once a second: watch disk and file, begin what is automatic."""
         if self._running is None and self._automatic_ns is not None and self._clock_ns() >= self._automatic_ns:
             self.start(AUTOMATIC_TITLE)
+        if self._ended_until and not self._left.waits(self._ended_until):
+            self._ended, self._ended_until = None, ""
         if self._running is None:
             return
         try:
@@ -234,16 +242,20 @@ class Recorder:
             return
         except OSError as error:
             writer.close()
-            self._trouble(f"lesson {name} ended: {error.strerror}", f"{_MEND}: the next start of KineBox completes it")
+            reason = error.strerror or str(error)
+            self._left.hand_over(writer.path, reason)
+            # Who wished its end is told that it is not finished; why it had to end is to be known also when it is.
+            self._trouble(f"lesson {name} ended: {why or reason}", remedy or _MEND, until="" if why else lesson_of(writer.path))
             return
         LessonIndex(self._folder).note(writer, path)
         log.info("lesson ends", lesson=name, seconds=round(writer.recorded_s, 1), mb=round(writer.size / 1e6, 2), gaps=writer.gaps)
 
-    def _trouble(self, words: str, remedy: str) -> None:
+    def _trouble(self, words: str, remedy: str, until: str = "") -> None:
+        """Say it until another lesson begins, or the one of the name `until` is finished."""
         trouble = Trouble("not_recording", words, remedy)
         if trouble != self._ended:
             log.warning("not recording", reason=words, remedy=remedy)
-        self._ended = trouble
+        self._ended, self._ended_until = trouble, until
         if self._automatic_ns is not None:
             self._automatic_ns = self._clock_ns() + RETRY_NS
 

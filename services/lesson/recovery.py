@@ -6,16 +6,22 @@ told that the recording is over. No file is overwritten, and one of a newer Kine
 
 To read eight hours of lesson takes eight seconds of a fast core, and on a school's box longer than the twenty that fusion keeps for
 a recorder that returns: so the lesson that goes on is looked for first, and the others are completed beside it.
+
+A disk that is full or away may have room or be back at any time, and a box runs for weeks: what cannot be finished is tried again.
 """
 
+import errno
 import os
 import shutil
 import threading
+import time
 from pathlib import Path
 
 import structlog
 
 from models.errors import UserError
+from models.messages.trouble import Trouble
+from services.lesson.folder_lock import is_locked
 from services.lesson.free_names import rename_free, reserve
 from services.lesson.index import LessonIndex
 from services.lesson.layout import PART_SUFFIX
@@ -26,14 +32,47 @@ from services.lesson.survey import StoppedError, survey
 from services.support.sync import sync_folder
 
 DAMAGED_SUFFIX = f"{PART_SUFFIX}.damaged"
+RETRY_S = 30.0
+"""A lesson that could not be finished is tried again after this."""
+
+_REST = 20
+"""It takes a core no more than one part in so many to read again and again what cannot be finished."""
+_MENDS_ITSELF = "nothing of it is lost: it is finished by itself once its disk is there, has room and can be written to"
+
 log = structlog.get_logger()
 
 
 class Left:
-    """The unfinished lessons that are in a folder before a recorder begins there. One that begins later is none of them."""
+    """Lessons that wait to be finished: those that are in a folder before a recorder begins there, and those that it hands over.
+
+    They may be handed over and asked about on one thread while they are completed on another.
+    """
 
     def __init__(self, folder: Path) -> None:
-        self._paths = [path for path in sorted(folder.glob(f"*{PART_SUFFIX}")) if _is_lesson(path)]
+        self._why = {path: "" for path in sorted(folder.glob(f"*{PART_SUFFIX}")) if _is_lesson(path)}
+        """Why a lesson could not be finished when it was tried last; empty before."""
+        self._lock = threading.Lock()
+
+    def hand_over(self, path: Path, why: str) -> None:
+        """A lesson that was ended could not be finished, and its file is closed."""
+        with self._lock:
+            self._why[path] = why
+
+    def waits(self, lesson: str) -> bool:
+        """Whether the lesson of that name is not finished yet."""
+        with self._lock:
+            return any(lesson_of(path) == lesson for path in self._why)
+
+    @property
+    def trouble(self) -> Trouble | None:
+        """Which lessons could not be finished, and why not; None if there are none. It keeps nobody from recording."""
+        with self._lock:
+            tried = [(path, why) for path, why in self._why.items() if why]
+        if not tried:
+            return None
+        (path, why), *others = tried
+        which = f"{lesson_of(path)} and {len(others)} more are" if others else f"{lesson_of(path)} is"
+        return Trouble("recording_stalled", f"lesson {which} not finished yet: {why}", _MENDS_ITSELF)
 
     def cut_short(self, run_ns: int) -> LessonWriter | None:
         """Open the newest one that was begun in this run of the box and not ended: its recorder died while it was being recorded.
@@ -46,25 +85,82 @@ class Left:
         Returns:
             The lesson, to be gone on with; None if there is none.
         """
-        begun = [(began_ns, path) for path in self._paths if (began_ns := _began_ns(path, run_ns)) is not None]
+        begun = [(began_ns, path) for path in self._why if (began_ns := _began_ns(path, run_ns)) is not None]
         for _, path in sorted(begun, reverse=True):
-            self._paths.remove(path)
-            writer = _recovered(path)
+            writer = self._opened(path)
             if writer is not None and not writer.ended:
+                self._done(path)
+                log.info("lesson recovered", lesson=path.name, mb=_mb(writer))
                 return writer
             if writer is not None:
-                _finish(writer)
+                self._finish(path, writer)
         return None
 
-    def complete(self, stop: threading.Event) -> None:
-        """Finish all others. Once `stop` is set the rest stay as they are, until the next start."""
-        for path in self._paths:
+    def keep_completing(self, stop: threading.Event) -> None:
+        """As `complete`, again and again until `stop` is set."""
+        while not stop.is_set():
+            in_vain_s = self.complete(stop)
+            stop.wait(max(RETRY_S, _REST * in_vain_s))
+
+    def complete(self, stop: threading.Event) -> float:
+        """Finish all others that can be finished now. Once `stop` is set the rest stay as they are, until the next start.
+
+        Returns:
+            Seconds that went into those that cannot be finished.
+        """
+        in_vain_s = 0.0
+        with self._lock:
+            paths = list(self._why)
+        for path in paths:
+            began_s = time.monotonic()
             try:
-                writer = _recovered(path, stop)
+                writer = self._opened(path, stop)
             except StoppedError:
-                return
-            if writer is not None:
-                _finish(writer)
+                break
+            if writer is None or not self._finish(path, writer):
+                in_vain_s += time.monotonic() - began_s
+        return in_vain_s
+
+    def _opened(self, path: Path, stop: threading.Event | None = None) -> LessonWriter | None:
+        """As `_reopened`, and None of one that cannot be read or written now: that one waits on, unless somebody removed it."""
+        try:
+            writer = _reopened(path, stop)
+        except OSError as error:
+            self._failed(path, path, error)
+            return None
+        if writer is None:
+            self._done(path)
+        return writer
+
+    def _finish(self, path: Path, writer: LessonWriter) -> bool:
+        """Finish what was opened from `path`; whether that could be done. If not, it waits on."""
+        try:
+            finished = writer.finish()
+        except OSError as error:
+            writer.close()
+            self._failed(path, writer.path, error)
+            return False
+        self._done(path)
+        LessonIndex(finished.parent).note(writer, finished)
+        log.info("lesson recovered", lesson=path.name, mb=_mb(writer))
+        return True
+
+    def _done(self, path: Path) -> None:
+        with self._lock:
+            del self._why[path]
+
+    def _failed(self, path: Path, path_now: Path, error: OSError) -> None:
+        """It could not be finished, and may have another name since it was marked as ended; a new reason is said once."""
+        if isinstance(error, FileNotFoundError) and _was_removed(path_now):
+            log.info("an unfinished lesson was taken away", lesson=path.name)
+            self._done(path)
+            return
+        why = error.strerror or str(error)
+        with self._lock:
+            before = self._why.pop(path)
+            self._why[path_now] = why
+        if why != before:
+            log.warning("a lesson could not be finished; it is tried again", lesson=path_now.name, reason=str(error))
 
 
 def _is_lesson(path: Path) -> bool:
@@ -88,18 +184,6 @@ def _began_ns(path: Path, run_ns: int) -> int | None:
     except (OSError, UserError):
         return None  # What is wrong is said when it is to be completed.
     return header.started_ns if header.run_ns == run_ns else None
-
-
-def _recovered(path: Path, stop: threading.Event | None = None) -> LessonWriter | None:
-    """As `_reopened`, and None, having said so, of one that cannot be read or written now; it is tried again at the next start."""
-    try:
-        writer = _reopened(path, stop)
-    except OSError as error:
-        log.warning("a lesson could not be recovered", lesson=path.name, reason=str(error))
-        return None
-    if writer is not None:
-        log.info("lesson recovered", lesson=path.name, mb=round(writer.size / 1e6, 2))
-    return writer
 
 
 def _reopened(path: Path, stop: threading.Event | None) -> LessonWriter | None:
@@ -152,6 +236,9 @@ def reopen(path: Path, stop: threading.Event | None = None) -> LessonWriter:
 
 def _keep(path: Path) -> Path:
     """Copy a damaged file beside itself; the copy is safe when this returns."""
+    if shutil.disk_usage(path.parent).free < path.stat().st_size:
+        # A copy that is begun in vain again and again would take the last room from the lesson that is recorded.
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
     kept = reserve(path.parent, lesson_of(path), DAMAGED_SUFFIX)
     try:
         shutil.copyfile(path, kept)
@@ -164,11 +251,13 @@ def _keep(path: Path) -> Path:
     return kept
 
 
-def _finish(writer: LessonWriter) -> None:
+def _was_removed(path: Path) -> bool:
+    """Whether a file is away, and not the disk on which it is."""
     try:
-        path = writer.finish()
-    except OSError as error:
-        writer.close()
-        log.warning("a recovered lesson could not be finished", lesson=writer.path.name, reason=str(error))
-    else:
-        LessonIndex(path.parent).note(writer, path)
+        return is_locked(path.parent) and not path.exists()
+    except OSError:
+        return False
+
+
+def _mb(writer: LessonWriter) -> float:
+    return round(writer.size / 1e6, 2)

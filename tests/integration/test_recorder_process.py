@@ -29,7 +29,7 @@ from services.lesson.index import LessonIndex
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_reader import LessonPart, open_lesson
 from services.lesson.process import RecorderLoop
-from services.lesson.recovery import Left
+from services.lesson.recovery import RETRY_S, Left
 from services.lesson.replay import compare, replay
 from services.lesson.survey import Survey, survey
 from services.site_file.rendering import render
@@ -223,6 +223,33 @@ def test_a_disk_that_takes_no_more_ends_the_lesson_with_a_reason_and_keeps_what_
     with box.recorder(run_ns=time.monotonic_ns()):
         until((box.lessons / f"{lesson}.mcap").exists, "the lesson to be completed")
     box.require_replay(lesson, segments=1)
+
+
+def test_a_lesson_that_a_full_disk_left_unfinished_is_finished_by_the_box_that_runs_once_there_is_room_beside_the_next_one(
+    box: Box,
+) -> None:
+    def said(words: str) -> bool:
+        box.listen(0.2)
+        return box.newest is not None and words in box.newest.reason
+
+    with box.recorder() as process:
+        box.wish("start", "cut short")
+        safe = box.wait_recorded(process.pid, parts=4)
+        finished = box.lessons / f"{safe.lesson}.mcap"
+        (file,) = box.lessons.glob("*.mcap.part")
+        # Not a byte more, as on a full disk.
+        resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (file.stat().st_size, resource.RLIM_INFINITY))
+        until(lambda: said("is not finished yet: File too large"), "the recorder to say that the lesson is not finished")
+        assert not finished.exists()
+        resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+        box.wish("start", "the next one")
+        until(finished.exists, "the lesson to be finished", RETRY_S + DEADLINE_S)
+        until(lambda: not said("is not finished yet"), "the recorder to say no more of it")
+        assert box.newest is not None
+        assert box.newest.recorder is not None
+        assert box.newest.recorder.title == "the next one"
+    assert len(box.parts(safe.lesson)) >= 4
+    box.require_replay(safe.lesson, segments=1)
 
 
 def test_two_recorders_never_work_in_one_folder(box: Box) -> None:

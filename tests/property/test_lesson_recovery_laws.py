@@ -9,6 +9,7 @@ from functools import cache
 from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import pytest
@@ -21,11 +22,12 @@ from structlog.testing import capture_logs
 from models.errors import UserError
 from models.messages.lesson import FusionLog
 from services.lesson import index, lesson_header
+from services.lesson.folder_lock import lock
 from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import Contents, LessonWriter, mark_ended
 from services.lesson.lesson_reader import LessonPart, open_lesson
 from services.lesson.mcap_records import walk
-from services.lesson.recovery import DAMAGED_SUFFIX, Left, reopen
+from services.lesson.recovery import DAMAGED_SUFFIX, RETRY_S, Left, reopen
 from services.lesson.survey import survey
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
 from tests.synthetic.recovery import recover
@@ -186,17 +188,125 @@ def test_a_box_that_ends_waits_for_no_lesson_of_before_and_leaves_it_as_it_was(t
         assert as_logged(list(lesson.parts())) == list(PARTS[:3])
 
 
+def no_space(*_: object) -> Path:
+    raise OSError(errno.ENOSPC, "No space left on device")
+
+
+def test_a_lesson_of_before_that_cannot_be_finished_is_tried_again_told_of_once_and_finished_when_it_can(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    data, _ = written()
+    for name in ("a", "b"):
+        (tmp_path / f"{name}{PART_SUFFIX}").write_bytes(data[:-20])
+    left = Left(tmp_path)
+    assert left.trouble is None
+    with monkeypatch.context() as full, capture_logs() as logged:
+        full.setattr(LessonWriter, "finish", no_space)
+        for _ in range(3):
+            left.complete(threading.Event())
+            assert left.trouble is not None
+            assert left.trouble.words == "lesson a and 1 more are not finished yet: No space left on device"
+    assert [line["log_level"] for line in logged] == ["warning"] * 2
+    left.complete(threading.Event())
+    assert left.trouble is None
+    for name in ("a", "b"):
+        with open_lesson(tmp_path / f"{name}{SUFFIX}") as lesson:
+            assert as_logged(list(lesson.parts())) == list(PARTS)
+
+
+def test_a_lesson_that_waits_is_tried_again_until_the_box_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    data, _ = written()
+    (tmp_path / f"a{PART_SUFFIX}").write_bytes(data[:-20])
+    ends, tried = threading.Event(), 0
+    finish = LessonWriter.finish
+
+    def third_time(writer: LessonWriter) -> Path:
+        nonlocal tried
+        tried += 1
+        if tried < 3:
+            no_space()
+        ends.set()
+        return finish(writer)
+
+    monkeypatch.setattr("services.lesson.recovery.RETRY_S", 0.01)
+    monkeypatch.setattr(LessonWriter, "finish", third_time)
+    Left(tmp_path).keep_completing(ends)
+    assert tried == 3
+    with open_lesson(tmp_path / f"a{SUFFIX}") as lesson:
+        assert as_logged(list(lesson.parts())) == list(PARTS)
+
+
+def test_a_long_lesson_that_can_never_be_finished_is_read_again_the_less_often_the_longer_that_takes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rests: list[float | None] = []
+
+    class Ends(threading.Event):
+        def wait(self, timeout: float | None = None) -> bool:
+            rests.append(timeout)
+            if len(rests) == 2:
+                self.set()
+            return self.is_set()
+
+    took = iter((0.1, 100.0))
+    left = Left(tmp_path)
+    monkeypatch.setattr(left, "complete", lambda _: next(took))
+    left.keep_completing(Ends())
+    assert rests == [RETRY_S, 2000.0]
+
+
+@pytest.mark.parametrize("taken", ["file", "disk"])
+def test_a_lesson_that_waits_is_forgotten_if_it_was_removed_and_waits_for_its_disk_if_that_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, taken: str
+) -> None:
+    folder = tmp_path / "lessons"
+    lock(folder).close()
+    data, _ = written()
+    path = folder / f"a.ended{PART_SUFFIX}"
+    path.write_bytes(data[:-20])
+    left = Left(folder)
+    with monkeypatch.context() as full:
+        full.setattr(LessonWriter, "finish", no_space)
+        left.complete(threading.Event())
+    if taken == "file":
+        path.unlink()
+        left.complete(threading.Event())
+        assert left.trouble is None
+        return
+    away = folder.rename(tmp_path / "away")
+    left.complete(threading.Event())
+    assert left.trouble is not None
+    away.rename(folder)
+    left.complete(threading.Event())
+    assert left.trouble is None
+    assert (folder / f"a{SUFFIX}").is_file()
+
+
+def test_no_copy_of_a_damaged_file_is_begun_for_which_there_is_no_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    data, stages = written()
+    changed = bytearray(data[: stages[-1].end])
+    changed[stages[2].end + 100] ^= 1
+    (tmp_path / f"changed{PART_SUFFIX}").write_bytes(changed)
+    left = Left(tmp_path)
+    with monkeypatch.context() as full:
+        full.setattr("services.lesson.recovery.shutil.disk_usage", lambda _: SimpleNamespace(free=len(changed) - 1))
+        full.setattr("services.lesson.recovery.shutil.copyfile", die)
+        left.complete(threading.Event())
+    assert [path.read_bytes() for path in tmp_path.iterdir()] == [changed]
+    assert left.trouble is not None
+    left.complete(threading.Event())
+    assert left.trouble is None
+    assert (tmp_path / f"changed{DAMAGED_SUFFIX}").read_bytes() == changed
+
+
 def test_a_file_whose_summary_was_begun_was_ended_and_stays_so_until_it_is_finished(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     data, _ = written()
     (tmp_path / f"a{PART_SUFFIX}").write_bytes(data[:-20])
 
-    def fail(_: LessonWriter) -> Path:
-        raise OSError(errno.ENOSPC, "No space left on device")
-
     with monkeypatch.context() as full:
-        full.setattr(LessonWriter, "finish", fail)
+        full.setattr(LessonWriter, "finish", no_space)
         assert recover(tmp_path, header().run_ns) is None
     assert recover(tmp_path, header().run_ns) is None, "the summary was cut off, and with it the sign of its end"
     with open_lesson(tmp_path / f"a{SUFFIX}") as lesson:

@@ -12,6 +12,7 @@ from services.lesson.folder_lock import lock
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.recorder import Recorder
+from services.lesson.recovery import Left
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
 
 
@@ -24,13 +25,14 @@ class Room:
         self.folder = folder
         lock(folder).close()
         monkeypatch.setattr(module, "free_disk_mib", lambda _folder: self.free_mb * 1e6 / 2**20)
+        self.left = Left(folder)
         self.recorder = self.started(automatic=automatic)
 
     def started(self, unfinished: LessonWriter | None = None, *, automatic: bool = False, run_ns: int | None = None) -> Recorder:
         """A recorder of the run of the box that lessons name, or of another one."""
         run_ns = header().run_ns if run_ns is None else run_ns
         config = LessonsConfig(automatic=automatic)
-        return Recorder(self.folder, config, self._header, run_ns, unfinished, lambda: self.now_ns)
+        return Recorder(self.folder, config, self._header, run_ns, self.left, unfinished, lambda: self.now_ns)
 
     def asks(self) -> SegmentRequest | None:
         """What fusion is asked for once the recorder has looked after its disk."""
@@ -57,6 +59,12 @@ class Room:
         """The recorder's trouble as people read it."""
         trouble = self.recorder.trouble
         return "" if trouble is None else one_line((trouble,))
+
+    @property
+    def waiting(self) -> str:
+        """What is said of lessons that wait to be finished."""
+        trouble = self.left.trouble
+        return "" if trouble is None else trouble.words
 
     def _header(self, title: str) -> LessonHeader:
         return header(title)

@@ -9,6 +9,7 @@ from mcap.records import Message, Metadata
 
 from models.errors import UserError
 from models.messages.lesson import FusionLog
+from services.cli.lessons import delete, find
 from services.lesson import lesson_header
 from services.lesson.layout import MARK, PART_SUFFIX
 from services.lesson.lesson_file import LessonWriter, _chunk
@@ -74,6 +75,26 @@ def test_an_unfinished_lesson_is_not_mistaken_for_a_whole_one(tmp_path: Path) ->
     with pytest.raises(UserError, match="is not finished; end its recording"):
         open_lesson(tmp_path / f"running{PART_SUFFIX}")
     writer.close()
+
+
+def test_of_a_lesson_that_a_full_disk_left_unfinished_nobody_is_told_to_start_a_box_that_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    writer = LessonWriter.create(tmp_path, "full", header())
+
+    def no_space(_: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as full:
+        full.setattr("services.lesson.lesson_file.os.fsync", no_space)
+        with pytest.raises(OSError, match="No space"):
+            writer.finish()
+    writer.close()
+    words = "lesson .*full.* is not finished; .*'kinebox doctor' .*what a full disk left once there is room"
+    with pytest.raises(UserError, match=words):
+        open_lesson(find("full", tmp_path))
+    with pytest.raises(UserError, match=words):
+        delete("full", tmp_path, sure=True)
 
 
 def test_a_file_that_is_not_there_and_one_that_is_no_lesson_are_named(tmp_path: Path) -> None:

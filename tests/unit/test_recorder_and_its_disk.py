@@ -2,6 +2,7 @@
 
 import errno
 import os
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -214,6 +215,62 @@ def test_a_lesson_that_was_ended_before_its_first_part_is_never_gone_on_with(roo
         room.recorder.stop()
     assert recover(room.folder, header().run_ns) is None
     assert len(room.files(SUFFIX)) == 1
+
+
+def test_a_lesson_that_a_full_disk_left_unfinished_is_told_of_also_in_the_next_one_and_finished_once_there_is_room(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    room.recorder.start("one")
+    room.record(parts=3)
+    name = room.recorder.health().lesson
+    with monkeypatch.context() as full:
+        full.setattr("services.lesson.lesson_file.os.fsync", no_space)
+        room.now_ns += SECOND_NS
+        room.recorder.take(part(BEGIN_NS + 1, 3))
+        assert f"lesson {name} ended: No space left on device" in room.trouble
+        room.left.complete(threading.Event())
+    room.recorder.start("two")
+    room.record(parts=1)
+    assert room.trouble == ""
+    assert room.waiting == f"lesson {name} is not finished yet: No space left on device"
+    room.left.complete(threading.Event())
+    assert room.waiting == ""
+    assert room.recorder.health().title == "two"
+    room.record(parts=1)
+    with open_lesson(room.folder / f"{name}{SUFFIX}") as lesson:
+        assert lesson.summary().parts == 3
+
+
+def test_of_a_lesson_that_a_person_ended_nothing_is_said_any_more_once_it_is_finished(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    room.recorder.start("one")
+    room.record(parts=1)
+    with monkeypatch.context() as full:
+        full.setattr("services.lesson.lesson_file.os.fsync", no_space)
+        room.recorder.stop()
+        room.left.complete(threading.Event())
+        room.recorder.look_after()
+        assert room.trouble
+        assert room.waiting
+    room.left.complete(threading.Event())
+    room.recorder.look_after()
+    assert (room.trouble, room.waiting) == ("", "")
+
+
+def test_that_a_full_disk_cut_a_lesson_short_is_said_until_the_next_one_although_it_was_finished(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    room.recorder.start("one")
+    room.record(parts=1)
+    with monkeypatch.context() as full:
+        full.setattr("services.lesson.lesson_file.os.fsync", no_space)
+        room.now_ns += SECOND_NS
+        room.recorder.take(part(BEGIN_NS + 1, 1))
+    room.left.complete(threading.Event())
+    room.recorder.look_after()
+    assert room.waiting == ""
+    assert "ended: No space left on device" in room.trouble
 
 
 def test_an_automatic_recorder_waits_until_there_is_room_again(automatic_room: Room) -> None:
