@@ -54,7 +54,7 @@ def _parts(order: Order) -> Iterator[Examined]:
     configuration = gather_configuration(order.site)
     yield judge_configuration(configuration)
     if not configuration.error:  # Else nobody knows where lessons shall be.
-        yield judge_lessons(gather_lessons(configuration.site, order.data))
+        yield judge_lessons(gather_lessons(configuration.site, order.data, order.sensors.free_disk_mib))
     yield judge_inspected(gather_inspected(configuration, order.data, order.inspections))
     yield from _running(order, configuration)
 

@@ -1,12 +1,14 @@
 """Where lessons are kept: whether the recorder can begin one there, and whether their list can be kept."""
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 from models.config.site import LessonsConfig, Site
 from services.doctor.finding import Examined, Fact, Finding
 from services.doctor.folders import KNOWN_BY, try_folder
+from services.lesson.disk_room import shortage
 
 
 @dataclass(frozen=True)
@@ -17,23 +19,27 @@ class LessonsFolder:
         folder: of the lessons.
         place: the folder, or what is there of the way to it: the recorder makes the rest.
         problem: why the place cannot be used; empty if it can.
+        lacking: why its disk takes no lesson; empty if it does.
         index: what is no file and lies in the place of the list's; None if there is nothing of the kind.
     """
 
     folder: Path
     place: Path
     problem: str
+    lacking: str
     index: Path | None
 
 
-def gather_lessons(site: Site | None, data: Path) -> LessonsFolder | None:
+def gather_lessons(site: Site | None, data: Path, free_disk_mib: Callable[[Path], float]) -> LessonsFolder | None:
     """Look where a site has its lessons, without a site where they are by default; None if there is no data folder to look in."""
     if not data.is_dir():
         return None
-    folder = data / (LessonsConfig() if site is None else site.lessons).folder
+    config = LessonsConfig() if site is None else site.lessons
+    folder = data / config.folder
     place = next(each for each in (folder, *folder.parents) if os.path.lexists(each))
     problem = "" if place == data else try_folder(place)  # The data folder is examined anyway.
-    return LessonsFolder(folder, place, problem, None if problem else _index(folder))
+    lacking = shortage(free_disk_mib(folder), config)
+    return LessonsFolder(folder, place, problem, lacking, None if problem else _index(folder))
 
 
 def judge_lessons(lessons: LessonsFolder | None) -> Examined:
@@ -44,12 +50,24 @@ def judge_lessons(lessons: LessonsFolder | None) -> Examined:
         words = f"nothing can be recorded: {lessons.place} {lessons.problem}"
         remedy = "give it another name, mount its disk, or correct its owner and rights; or correct lessons.folder in the site file"
         return Examined((Finding("fault", "lessons", words, KNOWN_BY, remedy),))
-    facts = (Fact("lessons", f"can be recorded in {lessons.folder}"),)
+    findings = [each for each in (_room(lessons), _list(lessons)) if each is not None]
+    facts = () if lessons.lacking else (Fact("lessons", f"can be recorded in {lessons.folder}"),)
+    return Examined(tuple(findings), facts)
+
+
+def _room(lessons: LessonsFolder) -> Finding | None:
+    if not lessons.lacking:
+        return None
+    words = f"nothing can be recorded in {lessons.folder}: {lessons.lacking}"
+    remedy = "remove lessons that are not needed or other files on that disk, or use a larger one"
+    return Finding("fault", "lessons", words, "the file system of the folder of lessons", remedy)
+
+
+def _list(lessons: LessonsFolder) -> Finding | None:
     if lessons.index is None:
-        return Examined(facts=facts)
+        return None
     words = f"the list of lessons cannot be kept: {lessons.index} is no file; every look at the list reads all lessons"
-    remedy = "give it another name; the list is made anew"
-    return Examined((Finding("warning", "lessons", words, "looking for the list's file", remedy),), facts)
+    return Finding("warning", "lessons", words, "looking for the list's file", "give it another name; the list is made anew")
 
 
 def _index(folder: Path) -> Path | None:

@@ -21,6 +21,7 @@ from models.messages.health import RecorderHealth
 from models.messages.lesson import FusionLog, SegmentRequest
 from models.messages.trouble import Trouble
 from services.lesson import told_to_stop
+from services.lesson.disk_room import shortage
 from services.lesson.folder_lock import is_locked, lock
 from services.lesson.following import Following
 from services.lesson.free_names import numbered
@@ -88,6 +89,7 @@ class Recorder:
         self._ended: Trouble | None = None
         self._ended_until = ""
         """The lesson with whose completion `_ended` is over; empty if only another lesson ends it."""
+        self._lacking = ""  # Why the disk would take no lesson; looked at while there is none.
         self._running: _Running | None = None
         self._lock: BinaryIO | None = None
         if unfinished is not None:
@@ -97,9 +99,8 @@ class Recorder:
         """Begin a lesson, unless one is being recorded; `asked_ns` names who asked for it."""
         if self._running is not None:
             return
-        free_mb = self._free_mb()
-        if free_mb < self._config.least_free_mb:
-            self._trouble(f"no lesson was begun: {self._too_full(free_mb)}", _REMOVE)
+        if lacking := self._shortage():
+            self._trouble(f"no lesson was begun: {lacking}", _REMOVE)
             return
         header = self._header(title)
         try:
@@ -169,6 +170,7 @@ class Recorder:
         if self._ended_until and not self._left.waits(self._ended_until):
             self._ended, self._ended_until = None, ""
         if self._running is None:
+            self._lacking = self._shortage()
             return
         try:
             in_place = self._running.writer.in_place
@@ -178,16 +180,15 @@ class Recorder:
         if not in_place:
             self._finish()
             return
-        free_mb = self._free_mb()
-        if free_mb < self._config.least_free_mb:
-            self._finish(self._too_full(free_mb), _REMOVE)
+        if lacking := self._shortage():
+            self._finish(lacking, _REMOVE)
 
     @property
     def trouble(self) -> Trouble | None:
         """What is wrong; None if nothing is."""
         running = self._running
         if running is None:
-            return self._ended
+            return self._ended or self._no_room()
         if self._clock_ns() - running.heard_ns > SILENT_NS:
             words = f"lesson {_name(running.writer)} stands still: nothing is heard of fusion"
             return Trouble("recording_stalled", words, "wait some seconds: it goes on when the figure does")
@@ -259,13 +260,12 @@ class Recorder:
         if self._automatic_ns is not None:
             self._automatic_ns = self._clock_ns() + RETRY_NS
 
-    def _free_mb(self) -> float:
-        """In the unit of the site file."""
-        return free_disk_mib(self._folder) * 2**20 / 1e6
+    def _no_room(self) -> Trouble | None:
+        """Said before anybody is refused; not as "not_recording", by which who asked for a lesson knows that it failed."""
+        return Trouble("disk_full", f"no lesson can be begun: {self._lacking}", _REMOVE) if self._lacking else None
 
-    def _too_full(self, free_mb: float) -> str:
-        least_mb = self._config.least_free_mb
-        return f"{free_mb:.0f} MB are left on the disk, lessons.least_free_mb is {least_mb}"
+    def _shortage(self) -> str:
+        return shortage(free_disk_mib(self._folder), self._config)
 
     def _create(self, header: LessonHeader) -> LessonWriter:
         if not is_locked(self._folder):

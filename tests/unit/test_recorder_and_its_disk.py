@@ -51,6 +51,20 @@ def test_a_disk_that_fills_up_ends_the_lesson_cleanly_and_says_so(room: Room) ->
     assert room.recorder.health().title == "three"
 
 
+def test_a_disk_on_which_no_lesson_can_be_begun_is_told_before_anybody_wishes_one_and_refuses_nobody_who_ends_one(
+    room: Room,
+) -> None:
+    room.free_mb = 300.0
+    assert room.asks() is None
+    trouble = room.recorder.trouble
+    assert trouble is not None
+    assert trouble.words == "no lesson can be begun: 300 MB are left on the disk, lessons.least_free_mb is 500"
+    assert (trouble.code, bool(trouble.remedy)) == ("disk_full", True), "'not_recording' is how who asked learns that it failed"
+    room.free_mb = 501.0
+    assert room.asks() is None
+    assert room.trouble == ""
+
+
 def test_a_write_error_ends_the_lesson_and_what_was_safe_stays_readable(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
     room.recorder.start("one")
     room.record(parts=3)

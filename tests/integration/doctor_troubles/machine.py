@@ -28,6 +28,12 @@ MACHINE: dict[str, Trouble] = {
     "the disk is nearly full": Trouble(
         measured(free_disk_mib=lambda _: 1500.0), "disk", r"is nearly full: 1\.5 GB", "delete old lessons", "warning"
     ),
+    "the disk of the lessons has no room for one": Trouble(
+        measured(free_disk_mib=lambda folder: 300.0 if folder.name == "lessons" else 50_000.0),
+        "lessons",
+        r"nothing can be recorded in .*/lessons: 315 MB are left on the disk, lessons\.least_free_mb is 500",
+        "remove lessons that are not needed",
+    ),
     "memory is nearly gone": Trouble(
         measured(free_memory_mib=lambda: 80.0), "memory", "memory is nearly gone: 80 MB", "end other programs"
     ),
