@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from models.config.site import Site
-from models.messages.health import MachineHealth, Restarts, SupervisorHealth
+from models.messages.health import Health, MachineHealth, Restarts, SupervisorHealth
 from models.messages.trouble import CALIBRATION_CODES, MACHINE_CODES, Trouble, TroubleCode
 from models.process import EDGE, ROUTER, process_name
 from services.doctor.cameras import does_work, is_held_up, judge_camera
 from services.doctor.finding import Examined, Fact, Finding, Level
+from services.doctor.lateness import LESS_TO_DO, judge_lateness, typical_ms
 from services.doctor.listen import Heard
 from services.doctor.machine import machine_finding
 from services.doctor.processes import RunningBox
@@ -22,6 +23,8 @@ OFTEN = 3
 RECENT_NS = 600 * 1_000_000_000
 SLOW_SHARE = 0.8
 """Below this share of the figures wished for, movement is not smooth."""
+BUSY_SHARE = 0.9
+"""A machine of which more is in use lets everything wait; so for the page (`lateness.ts`)."""
 SUPERVISOR = "supervisor"
 _LISTENED = "listening to the bus"
 _SUPERVISORS_WORD = "the supervisor's word"
@@ -69,6 +72,7 @@ def judge_box(box: BoxFacts) -> Examined:
         *_cameras(box),
         *_own_words(box),
         *_figures(box),
+        *_lateness(box),
         *_unreadable(box),
         *_machine(box),
         *_version(box),
@@ -156,9 +160,7 @@ def _page(box: BoxFacts) -> list[Finding]:
 
 
 def _cameras(box: BoxFacts) -> Iterator[Finding]:
-    cameras = [(camera.name, box.heard.healths.get(process_name(EDGE, camera.name))) for camera in box.site.cameras]
-    # Of one that failed the supervisor tells why.
-    heard = [(name, health) for name, health in cameras if health is not None and health.state != "failed"]
+    heard = _heard_cameras(box)
     working = [name for name, health in heard if does_work(name, health, box.now_ns)]
     held_up = [name for name, health in heard if is_held_up(name, health, box.now_ns)]
     busy = len(held_up) > 1 and held_up == working
@@ -169,19 +171,26 @@ def _cameras(box: BoxFacts) -> Iterator[Finding]:
             yield from judge_camera(name, health, box.now_ns)
 
 
+def _heard_cameras(box: BoxFacts) -> list[tuple[str, Health]]:
+    """The cameras whose processes speak; of one that failed the supervisor tells why."""
+    cameras = [(camera.name, box.heard.healths.get(process_name(EDGE, camera.name))) for camera in box.site.cameras]
+    return [(name, health) for name, health in cameras if health is not None and health.state != "failed"]
+
+
+def _load(box: BoxFacts) -> str:
+    """In brackets; empty if it is not known."""
+    machine = _machine_of(box)
+    if machine is None:
+        return ""
+    own = sum(health.cpu_cores for health in box.heard.healths.values())
+    return f" ({machine.used_cores:.1f} of {machine.granted_cores:g} cores are in use, {own:.1f} of them by the box)"
+
+
 def _busy(box: BoxFacts, cameras: int) -> Finding:
     """Once, in the place of the same words about every camera that works."""
-    machine = _machine_of(box)
-    own = sum(health.cpu_cores for health in box.heard.healths.values())
-    load = (
-        ""
-        if machine is None
-        else f" ({machine.used_cores:.1f} of {machine.granted_cores:g} cores are in use, {own:.1f} of them by the box)"
-    )
     which = f"all {cameras} cameras" + ("" if cameras == len(box.site.cameras) else " that work")
-    words = f"the box is too busy: {which} fall behind, and fast movement may be missed{load}"
-    remedy = "end other programs on this machine, use fewer cameras, or a faster box"
-    return Finding("warning", "processor", words, "what the cameras' processes measured in the last second", remedy)
+    words = f"the box is too busy: {which} fall behind, and fast movement may be missed{_load(box)}"
+    return Finding("warning", "processor", words, "what the cameras' processes measured in the last second", LESS_TO_DO)
 
 
 def _own_words(box: BoxFacts) -> Iterator[Finding]:
@@ -218,6 +227,14 @@ def _figures(box: BoxFacts) -> Iterator[Finding]:
         yield Finding("warning", ROUTER, words, "fusion's count", remedy)
 
 
+def _lateness(box: BoxFacts) -> Iterator[Finding]:
+    if not any(does_work(name, health, box.now_ns) for name, health in _heard_cameras(box)):
+        return  # Without pictures the last figure only grows older, and why there are none is told.
+    machine = _machine_of(box)
+    busy = machine is not None and machine.used_cores >= BUSY_SHARE * machine.granted_cores
+    yield from judge_lateness(box.heard.ages, _load(box) if busy else "", _log_of(ROUTER, box))
+
+
 def _unreadable(box: BoxFacts) -> Iterator[Finding]:
     for topic, count in box.heard.unreadable.items():
         words = f"{count} messages on {topic} could not be read"
@@ -252,11 +269,9 @@ def _facts(box: BoxFacts) -> tuple[Fact, ...]:
     speaking = len(box.heard.healths.keys() & set(box.expected) - given_up)  # For those the supervisor speaks.
     up = _ago(max(box.now_ns - supervisor.started_ns, 0) * 1e-9)
     rate = f"{box.heard.live / box.heard.seconds:.0f} figures a second" if box.heard.seconds else "not listened to"
-    return (
-        Fact(
-            "running box", f"version {supervisor.version}, up for {up}, {speaking} of {len(box.expected)} processes speak, {rate}"
-        ),
-    )
+    late = f", {typical_ms(box.heard.ages):.0f} ms late" if box.heard.ages else ""
+    words = f"version {supervisor.version}, up for {up}, {speaking} of {len(box.expected)} processes speak, {rate}{late}"
+    return (Fact("running box", words),)
 
 
 def _ago(seconds: float) -> str:

@@ -1,6 +1,7 @@
 """Listens to a running box: on its bus, and whether its page answers."""
 
 import time
+from collections import deque
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -11,6 +12,7 @@ from models.messages.health import Health
 from models.messages.motion import Motion
 from models.process import Delivery
 from services.bus.join import join
+from services.doctor.lateness import Age
 from services.supervisor import page
 
 Answer = Literal["answers", "silent"]
@@ -22,6 +24,8 @@ ENOUGH_S = 2.5
 _JOIN_S = 4.0
 _PAGE_S = 3.0
 _KEEP = 8
+_AGES = 150
+"""As many as come in five seconds; whoever floods the bus does not make the doctor grow."""
 
 
 @dataclass
@@ -34,6 +38,7 @@ class Heard:
         healths: newest of each process.
         alive: processes that hold their token on the bus now.
         live: figures that came.
+        ages: of the newest of these.
         unreadable: messages that could not be read, by topic.
     """
 
@@ -43,6 +48,7 @@ class Heard:
     healths: dict[str, Health] = field(default_factory=dict)
     alive: set[str] = field(default_factory=set)
     live: int = 0
+    ages: deque[Age] = field(default_factory=lambda: deque(maxlen=_AGES))
     unreadable: dict[str, int] = field(default_factory=dict)
 
     def take(self, delivery: Delivery) -> None:
@@ -50,8 +56,9 @@ class Heard:
         topic = delivery.topic
         try:
             if topic == topics.motion("live"):
-                codec.decode(delivery.payload, Motion)
+                motion = codec.decode(delivery.payload, Motion)
                 self.live += 1
+                self.ages.append(Age.of(motion, time.monotonic_ns()))
             else:
                 health = read_health(topic, delivery.payload)
                 self.healths[health.process] = health

@@ -125,13 +125,14 @@ def room(folder: Path, *, fusion: bool = False) -> Iterator[Room]:
 
 
 @contextmanager
-def filmed(folder: Path, calibration: Rig = RIG, late: str = "") -> Iterator[Room]:
+def filmed(folder: Path, calibration: Rig = RIG, late: str = "", age_ms: int = 0) -> Iterator[Room]:
     """A room with the real fusion, and cameras that film a pupil who walks and throws.
 
     Args:
         folder: for data.
         calibration: what fusion believes of the cameras, which are where `RIG` has them.
         late: a camera that counts one loop of its film less than the others.
+        age_ms: of the pictures when they reach fusion; with old ones no figure is waited for that is sure, as there may be none.
     """
     stop = threading.Event()
     with room(folder, fusion=True) as made:
@@ -150,13 +151,13 @@ def filmed(folder: Path, calibration: Rig = RIG, late: str = "") -> Iterator[Roo
         assert cameras is not None
         threads = [
             threading.Thread(target=FusionLoop(context, CpuMeter()).run, daemon=True),
-            threading.Thread(target=_film, args=(cameras, stop, late), daemon=True),
+            threading.Thread(target=_film, args=(cameras, stop, late, age_ms), daemon=True),
         ]
         for thread in threads:
             thread.start()
         try:
             figures = cameras.subscribe(topics.motion("live"), keep=1)
-            until(lambda: (came := figures.receive(0.1)) is not None and _is_sure(came.payload), "a figure")
+            until(lambda: (came := figures.receive(0.1)) is not None and (age_ms > 0 or _is_sure(came.payload)), "a figure")
             yield made
         finally:
             stop.set()
@@ -169,13 +170,13 @@ def _is_sure(payload: bytes) -> bool:
     return bool((codec.decode(payload, Motion).states == JointState.SEEN).all())
 
 
-def _film(bus: Bus, stop: threading.Event, late: str) -> None:
+def _film(bus: Bus, stop: threading.Event, late: str, age_ms: int) -> None:
     random = np.random.default_rng(7)
     pupil = Pupil()
     sequence = 0
     while not stop.wait(_FILM_S / len(RIG)):
         camera = RIG.cameras[sequence % len(RIG)]
-        t_ns = time.monotonic_ns()
+        t_ns = time.monotonic_ns() - age_ms * 1_000_000
         pixels = camera.project(pupil.joints(t_ns * 1e-9 % 1000)) + random.normal(0.0, 2.0, (17, 2))
         crop = Crop(float(pixels[:, 0].mean()), float(pixels[:, 1].mean()), 400.0)
         person = Person(1, crop, pixels.astype(np.float32), np.full(17, 2, np.float32), np.full(17, 0.8, np.float32))

@@ -2,6 +2,7 @@
 
 import datetime as dt
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import get_args
@@ -13,8 +14,9 @@ from models.config.site import SITE_VERSION, CameraConfig, Site
 from models.errors import UserError
 from models.messages.health import CameraHealth, FusionHealth, Health, MachineHealth, Restarts, SupervisorHealth
 from models.messages.trouble import MachineCode, Trouble, TroubleCode
-from services.doctor.box import BoxFacts, judge_box
+from services.doctor.box import BUSY_SHARE, BoxFacts, judge_box
 from services.doctor.finding import Examined, Fact, Finding, fault_of
+from services.doctor.lateness import LATE_MS, Age
 from services.doctor.listen import Heard
 from services.doctor.machine import MachineFacts, judge_machine
 from services.doctor.ports import Port, Ports, judge_ports
@@ -226,6 +228,50 @@ def test_few_figures_are_a_finding_only_while_somebody_is_in_view() -> None:
     for pupil, count in (("found", 1), ("searching", 0)):
         fusion = FusionHealth(12.0, 2.0, 0.9, 0, {}, pupil)  # type: ignore[arg-type]
         assert len(judge_box(box(health("fusion", fusion=fusion))).findings) == count
+
+
+def late(published_ms: float, heard_ms: float, *said: Health) -> BoxFacts:
+    facts = box(*said)
+    facts.heard.ages.extend([Age(60.0, 100.0), *[Age(published_ms, heard_ms)] * 9])
+    return facts
+
+
+def idle_machine() -> Health:
+    return health("supervisor", machine=msgspec.structs.replace(MACHINE, used_cores=1.0))
+
+
+def test_figures_that_come_in_time_are_no_finding_and_how_old_they_are_is_told() -> None:
+    judged = judge_box(late(60.0, 499.0))
+    assert judged.findings == ()
+    assert judged.facts[0].words.endswith("30 figures a second, 499 ms late")
+
+
+@pytest.mark.parametrize("pupil", ["found", "searching"])
+def test_figures_that_come_often_but_late_are_found_even_where_they_are_too_late_for_a_pupil_to_be_found(pupil: str) -> None:
+    fusion = health("fusion", fusion=FusionHealth(30.0, 2.0, 0.9, 0, {}, pupil))  # type: ignore[arg-type]
+    (finding,) = judge_box(late(850.0, 900.0, fusion, idle_machine())).findings
+    assert finding.what == "figures come 900 ms late, too late to teach by: the pictures reach fusion late"
+    assert "cables and network" in finding.remedy
+
+
+def test_who_holds_late_figures_up_is_named_by_where_they_grow_old() -> None:
+    (busy,) = judge_box(late(850.0, 900.0)).findings
+    assert "the box is too busy (1.9 of 2 cores are in use, 1.2 of them by the box)" in busy.what
+    assert "end other programs" in busy.remedy
+    (waiting,) = judge_box(late(60.0, 900.0, idle_machine())).findings
+    assert "they wait on the bus, 60 ms old when fusion published them" in waiting.what
+    assert "`kinebox logs --data data --process fusion`" in waiting.remedy
+
+
+def test_where_no_camera_works_that_is_told_and_not_that_the_last_figure_grows_older() -> None:
+    dead = [health(f"edge-{n}", camera=CameraHealth(n, 0.0, 0.0, 15.0, 0, 0.0, "thunder", {})) for n in "ab"]
+    assert all(words.startswith("camera ") for words in whats(judge_box(late(9000.0, 9000.0, *dead, idle_machine()))))
+
+
+def test_doctor_and_page_call_the_same_figures_late_and_the_same_machine_busy() -> None:
+    page = (Path(__file__).parents[2] / "services/tablet/web/src/connection/lateness.ts").read_text()
+    said = {name: float(figure) for name, figure in re.findall(r"^const (\w+) = ([\d.]+);", page, re.MULTILINE)}
+    assert (said["LATE_AT_SERVER_MS"], said["BUSY_SHARE"]) == (LATE_MS, BUSY_SHARE)
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,8 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
+import msgspec
+
 from models.messages import codec
 from services.doctor.finding import Examined
 from services.support.machine import Sensors
@@ -32,9 +34,25 @@ def messages_that_nobody_can_read(folder: Path) -> Iterator[Examined]:
         yield room.judged()
 
 
+@contextmanager
+def pictures_that_reach_fusion_late(folder: Path) -> Iterator[Examined]:
+    with doctor_room.filmed(folder, age_ms=900) as room:
+        measure = room.measured(Sensors())
+        # However busy the machine of the tests is.
+        room.voices["supervisor"] = lambda: room.supervisor(msgspec.structs.replace(measure(), used_cores=0.1))
+        yield room.judged()
+
+
 ROOM: dict[str, Trouble] = {
     "the clock was set": Trouble(
         clock_set_while_running, "clock", r"the clock was set forwards by 90\.0 s", "let a time service keep the clock", "warning"
+    ),
+    "figures come late": Trouble(
+        pictures_that_reach_fusion_late,
+        "fusion",
+        r"figures come (9\d\d|\d{4}) ms late, too late to teach by: the pictures reach fusion late",
+        "check the cameras' cables and network",
+        "warning",
     ),
     "somebody sends what nobody can read": Trouble(
         messages_that_nobody_can_read, "bus", r"\d+ messages on gym/health/stranger could not be read", "another version", "warning"
