@@ -149,7 +149,7 @@ test-motions: $(VENV)/.ready ## Simulated pupils of all ages perform every actio
 test-rendering: setup ## Lessons rendered, found again, broken off and out of disk; ten attempts from pixels to the page; some 15 minutes
 	$(PYTHON) -m pytest -m rendering tests/integration tests/browser
 
-bench-faults: setup $(FILM_OF_footage) ## Recovery and lost recording over 20 runs of each fault drill; some 45 minutes (--drills, --runs, --page in ARGS)
+bench-faults: setup $(FILM_OF_footage) ## Recovery and lost recording over 20 runs of each fault drill; some 80 minutes (--drills, --runs, --no-page in ARGS)
 	$(PYTHON) -m tests.bench.faults --data $(DATA) $(ARGS)
 
 bench-start: setup $(FILM_OF_footage) ## Seconds from the command to the figure in the browser, everything installed

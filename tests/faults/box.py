@@ -1,14 +1,12 @@
 """The box as it is shipped, in a folder of its own that can be filled, watched and looked over when it is gone."""
 
 import json
-import os
-import signal
 import subprocess
 import sys
 import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import psutil
@@ -35,12 +33,14 @@ class Box:
     Attributes:
         folder: has the site file, the output of the box and its data folder.
         port, bus_port: of the page and of the bus.
+        remains: what was not as it should be when the box had ended, before anything was cleared away.
     """
 
     process: "subprocess.Popen[bytes]"
     folder: Path
     port: int
     bus_port: int
+    remains: list[str] = field(default_factory=list)
 
     @property
     def data(self) -> Path:
@@ -139,16 +139,23 @@ def _started(folder: Path, site: Path, installed: Path, port: int, bus_port: int
 
 
 def end(box: Box) -> None:
-    """SIGTERM, and SIGKILL to whatever then remains; a stopped process would otherwise wait for ever."""
+    """SIGTERM, and SIGKILL to whatever then remains, which is noted; a stopped process would otherwise wait for ever."""
     if box.process.poll() is not None:
+        box.remains.append(f"a supervisor that had ended by itself, with code {box.process.returncode}")
         return
-    left = box.descendants()
+    children = box.descendants()
     box.process.terminate()
     try:
-        box.process.wait(ENDING_S)
+        code = box.process.wait(ENDING_S)
+        box.remains += [f"exit code {code}"] if code else []
     except subprocess.TimeoutExpired:
-        os.kill(box.process.pid, signal.SIGKILL)
+        box.remains.append(f"a supervisor that did not end within {ENDING_S:.0f} s")
+        box.process.kill()
         box.process.wait()
-    for child in left:
+    for child in children:
         with suppress(psutil.NoSuchProcess):
+            if child.is_running() and child.status() != psutil.STATUS_ZOMBIE:
+                box.remains.append(f"process {child.pid} of the box")
             child.kill()
+    unfinished = (path for pattern in ("*.tmp", "*.part") for path in box.data.rglob(pattern))
+    box.remains += [f"unfinished {path.name}" for path in unfinished]

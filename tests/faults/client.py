@@ -20,7 +20,7 @@ MOST_JOINTS = 9
 AWAY_S = 0.5
 """A pause of the figure that is longer than the seam of the looping footage makes it."""
 STAYS_S = 1.5
-"""So long a figure must last to be back; and so soon must a pause begin to be the fault's."""
+"""So long a figure must last to be back; and so soon after a fault must a pause begin to be the fault's."""
 _AGAIN_S = 0.1
 
 
@@ -45,6 +45,17 @@ class Seen:
     figures_s: list[float] = field(default_factory=list)
     statuses: list[tuple[float, dict[str, Any]]] = field(default_factory=list)
     cut_s: list[float] = field(default_factory=list)
+
+
+def joined(gaps: list[Gap]) -> list[Gap]:
+    """As one, those between which the figure did not stay."""
+    whole: list[Gap] = []
+    for gap in gaps:
+        if whole and gap.from_s < whole[-1].to_s + STAYS_S:
+            whole[-1] = Gap(whole[-1].from_s, gap.to_s)
+        else:
+            whole.append(gap)
+    return whole
 
 
 class Client:
@@ -78,14 +89,22 @@ class Client:
         """Those received after an instant."""
         return [status for at, status in self.seen.statuses if at > after_s]
 
-    def recovery_s(self, fault_s: float) -> float:
-        """From the fault until the figure was back and stayed for `STAYS_S`; 0 if the fault did not take it away."""
-        back_s = fault_s
-        for gap in self.gaps(fault_s):
-            if gap.from_s > back_s + STAYS_S:
-                break
-            back_s = gap.to_s
-        return back_s - fault_s
+    def recovery_s(self, fault_s: float, over_s: float) -> float:
+        """The longest that the figure was away because of a fault; 0 if it never was.
+
+        A figure that came back for less than `STAYS_S` was not back. One that went soon after the fault's begin has been away
+        since then.
+
+        Args:
+            fault_s: the fault's begin.
+            over_s: its end; a pause that begins within `STAYS_S` after it is still the fault's.
+        """
+        longest = 0.0
+        for away in joined(self.gaps(fault_s)):
+            if away.from_s <= over_s + STAYS_S:
+                begin_s = fault_s if away.from_s < fault_s + STAYS_S else away.from_s
+                longest = max(longest, away.to_s - begin_s)
+        return longest
 
     def gaps(self, fault_s: float) -> list[Gap]:
         """The pauses of the figure that ended after the fault and are longer than those of a healthy box."""

@@ -52,12 +52,13 @@ class Outcome:
     Attributes:
         drill: its name.
         fault_s: CLOCK_MONOTONIC of the fault.
-        recovery_s: until the figure was back for good; 0 if it never was away.
-        pause_s: the longest pause of the figure since then, the seams of the footage included.
+        recovery_s: the longest that the figure was away because of it, until it was back for good; 0 if it never was.
+        pause_s: the longest pause of the figure since the fault, the seams of the footage included.
         said_s: until the box said that something was wrong, on the page's socket or by cutting it; None if it never did.
         rss_mb: of all processes, afterwards.
         lost_s: what is missing in the record although there was a figure; None if nothing was recorded.
         still_s: the longest that a page showed the figure in colour although no motion came; None if no page was watched.
+        away_s: the longest that a page showed no live figure; likewise.
     """
 
     drill: str
@@ -68,6 +69,7 @@ class Outcome:
     rss_mb: float
     lost_s: float | None = None
     still_s: float | None = None
+    away_s: float | None = None
 
 
 @dataclass
@@ -99,6 +101,7 @@ class Stage:
 
     def outcome(self, drill: str, fault_s: float, said: Callable[[dict[str, Any]], bool]) -> Outcome:
         """Watch what comes after a fault that is over, and sum up."""
+        over_s = time.monotonic()
         self.client.wait_figure(time.monotonic(), RECOVERS_WITHIN_S)
         time.sleep(WATCHED_S)  # observed, not waited for: what comes back must stay
         self.client.wait_figure(time.monotonic(), RECOVERS_WITHIN_S)
@@ -108,7 +111,7 @@ class Stage:
         return Outcome(
             drill,
             fault_s,
-            client.recovery_s(fault_s),
+            client.recovery_s(fault_s, over_s),
             client.longest_pause_s(fault_s),
             min(signs) - fault_s if signs else None,
             self.box.rss_mb(),

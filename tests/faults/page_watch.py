@@ -1,10 +1,10 @@
-"""Whether a page ever showed in colour a figure that had stood still: what a teacher must not take for what the pupil does."""
+"""What a teacher saw of a fault: a figure that stood still in colour, which must not be, and for how long none was live."""
 
 from playwright.sync_api import Page
 
-# Notes when motion comes, and every 50 ms how long the live figure has been in colour without any.
+# Notes when motion comes, and every 50 ms for how long the figure has been in colour without any, and for how long none was live.
 _WATCH = """
-window.watched = { motionMs: performance.now(), stillMs: 0, greyed: false };
+window.watched = { motionMs: performance.now(), liveMs: performance.now(), stillMs: 0, awayMs: 0 };
 window.WebSocket = class extends window.WebSocket {
     constructor(...of) {
         super(...of);
@@ -14,10 +14,12 @@ window.WebSocket = class extends window.WebSocket {
     }
 };
 setInterval(() => {
-    const shown = document.querySelector('.page')?.dataset, watched = window.watched;
-    if (!shown || shown.stage === 'replay') return;
-    if (Number(shown.coloured) === 0) watched.greyed = true;
-    else watched.stillMs = Math.max(watched.stillMs, performance.now() - watched.motionMs);
+    const shown = document.querySelector('.page')?.dataset, watched = window.watched, nowMs = performance.now();
+    if (!shown) return;
+    if (shown.stage !== 'replay' && Number(shown.coloured) > 0)
+        watched.stillMs = Math.max(watched.stillMs, nowMs - watched.motionMs);
+    if (shown.phase === 'live' && (shown.stage === 'replay' || Number(shown.coloured) > 0)) watched.liveMs = nowMs;
+    watched.awayMs = Math.max(watched.awayMs, nowMs - watched.liveMs);
 }, 50);
 """
 
@@ -31,7 +33,7 @@ class PageWatch:
 
     def begin(self) -> None:
         """Forget what was."""
-        self._page.evaluate("() => Object.assign(window.watched, { stillMs: 0, greyed: false })")
+        self._page.evaluate("() => Object.assign(window.watched, { stillMs: 0, awayMs: 0 })")
 
     @property
     def still_s(self) -> float:
@@ -39,6 +41,6 @@ class PageWatch:
         return float(self._page.evaluate("() => window.watched.stillMs")) / 1e3
 
     @property
-    def greyed(self) -> bool:
-        """Whether the figure was grey at any time."""
-        return bool(self._page.evaluate("() => window.watched.greyed"))
+    def away_s(self) -> float:
+        """The longest time for which the page showed no live figure: grey, or interrupted."""
+        return float(self._page.evaluate("() => window.watched.awayMs")) / 1e3

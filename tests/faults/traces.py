@@ -31,8 +31,7 @@ def left_behind(box: Box, processes: list[psutil.Process], before: Before) -> li
     after = Before.look()
     left += [f"shared memory {name}" for name in sorted(after.shared - before.shared) if "zenoh" in name]
     left += [f"temporary {name}" for name in sorted(after.temporary - before.temporary) if "kinebox" in name or "numba" in name]
-    left += [f"unfinished {path.name}" for path in box.data.rglob("*.tmp")] if box.data.is_dir() else []
-    return left
+    return box.remains + left
 
 
 def _names(folder: Path) -> frozenset[str]:

@@ -52,15 +52,21 @@ def test_a_fault_that_the_box_never_tells_of_is_missed() -> None:
 @pytest.mark.parametrize(("still_s", "misses"), [(0.7, False), (1.6, True), (None, True)])
 def test_a_page_whose_figure_stands_still_in_colour_is_missed(still_s: float | None, misses: bool) -> None:
     seen = good("kill-fusion")
-    seen.still_s = still_s
+    seen.still_s, seen.away_s = still_s, 2.0
     expected = ["kill-fusion.coloured_still_s.max"] if misses else []
     assert missed(Played([[seen]]), ["kill-fusion"], 1, page=True) == expected
 
 
-def test_what_cannot_be_kept_or_need_not_be_said_is_held_against_nothing() -> None:
-    full, slow = good("full-disk"), good("slow-tablet")
-    full.lost_s, slow.said_s = None, None
-    assert missed(Played([[full, slow]]), ["full-disk", "slow-tablet"], 1) == []
+def test_a_page_on_which_the_figure_stays_away_is_missed() -> None:
+    seen = good("kill-fusion")
+    seen.still_s, seen.away_s = 0.5, 3.4
+    assert missed(Played([[seen]]), ["kill-fusion"], 1, page=True) == ["kill-fusion.page_away_s.max"]
+
+
+def test_what_need_not_be_said_is_held_against_nothing() -> None:
+    slow = good("slow-tablet")
+    slow.said_s = None
+    assert missed(Played([[slow]]), ["slow-tablet"], 1) == []
 
 
 @pytest.mark.parametrize(("failed", "code"), [([], 0), ([("kill-fusion", "waited in vain")], 1)])
@@ -70,5 +76,5 @@ def test_the_exit_code_says_whether_a_bar_was_missed(
     played = Played([[good("kill-fusion")]], failed=failed)
     monkeypatch.setattr(faults, "DRILLS", {"kill-fusion": None})
     monkeypatch.setattr(faults, "play", lambda *_, **_named: played)
-    monkeypatch.setattr(sys, "argv", ["faults", "--data", str(tmp_path), "--runs", "1"])
+    monkeypatch.setattr(sys, "argv", ["faults", "--data", str(tmp_path), "--runs", "1", "--no-page"])
     assert faults.main() == code
