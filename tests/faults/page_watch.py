@@ -28,19 +28,19 @@ class PageWatch:
     """Watches a page that is yet to be opened."""
 
     def __init__(self, page: Page) -> None:
-        self._page = page
+        self.page = page
         page.add_init_script(_WATCH)
 
     def begin(self) -> None:
         """Forget what was."""
-        self._page.evaluate("() => Object.assign(window.watched, { stillMs: 0, awayMs: 0 })")
+        self.page.evaluate("() => Object.assign(window.watched, { stillMs: 0, awayMs: 0 })")
 
     @property
     def still_s(self) -> float:
         """The longest time for which the figure was in colour although no motion came."""
-        return float(self._page.evaluate("() => window.watched.stillMs")) / 1e3
+        return float(self.page.evaluate("() => window.watched.stillMs")) / 1e3
 
     @property
     def away_s(self) -> float:
         """The longest time for which the page showed no live figure: grey, or interrupted."""
-        return float(self._page.evaluate("() => window.watched.awayMs")) / 1e3
+        return float(self.page.evaluate("() => window.watched.awayMs")) / 1e3

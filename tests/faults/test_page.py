@@ -4,17 +4,19 @@ import os
 import signal
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.conftest import browser as browser  # noqa: PLC0414 - a fixture
 from tests.faults.box import ISOLATED
 from tests.faults.drills import DRILLS, RECOVERS_WITHIN_S, VICTIM, Stage
 from tests.faults.page_watch import PageWatch
 from tests.faults.test_drills import staged
+from tests.integration.waiting import until
 
-pytestmark = [pytest.mark.usefixtures("watch"), pytest.mark.faults, pytest.mark.slow, pytest.mark.timeout(600)]
+pytestmark = [pytest.mark.faults, pytest.mark.slow, pytest.mark.timeout(600)]
 
 GREY_WITHIN_S = 1.2
 """Half a second, and what a browser without a graphics card is late on a busy machine."""
@@ -36,21 +38,25 @@ def stage(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stage]:
 
 
 @pytest.fixture
-def page(browser: Browser) -> Iterator[Page]:
-    made = browser.new_page(viewport={"width": 800, "height": 500})
-    made.set_default_timeout(RECOVERS_WITHIN_S * 1e3)
+def watch(browser: Browser, stage: Stage) -> Iterator[PageWatch]:
+    """The page is open and shows the figure."""
+    made = PageWatch(new_page(browser))
+    made.page.goto(stage.box.page)
+    made.page.wait_for_function(IS_LIVE)
+    stage.settle()
     yield made
-    made.close()
+    made.page.close()
 
 
 @pytest.fixture
-def watch(page: Page, stage: Stage) -> PageWatch:
-    """The page is open and shows the figure."""
-    made = PageWatch(page)
-    page.goto(stage.box.page)
-    page.wait_for_function(IS_LIVE)
-    stage.settle()
-    return made
+def page(watch: PageWatch) -> Page:
+    return watch.page
+
+
+def new_page(browser: Browser) -> Page:
+    page = browser.new_page(viewport={"width": 800, "height": 500})
+    page.set_default_timeout(RECOVERS_WITHIN_S * 1e3)
+    return page
 
 
 def test_the_figure_is_grey_while_fusion_and_its_spare_are_dead_and_coloured_once_it_is_back(page: Page, stage: Stage) -> None:
@@ -78,3 +84,18 @@ def test_a_camera_whose_process_is_dead_is_shown_as_lost_and_the_figure_stays(pa
     page.wait_for_function(f"() => document.querySelector('[data-camera={VICTIM}]')?.dataset.state === 'lost'")
     stage.client.wait_figure(fault_s)
     page.wait_for_function(f"() => ['ok', 'slow'].includes(document.querySelector('[data-camera={VICTIM}]')?.dataset.state)")
+
+
+def test_a_storm_of_crashes_is_told_to_the_teacher_with_what_to_do(browser: Browser, tmp_path: Path) -> None:
+    with staged(tmp_path, "[supervisor]\nmax_restarts = 1\nwindow_s = 600\n", disk=False) as stage:
+        page = new_page(browser)
+        page.goto(stage.box.page)
+        page.wait_for_function(IS_LIVE)
+        name = f"edge-{VICTIM}"
+        first = stage.box.child(name).pid
+        os.kill(first, signal.SIGKILL)
+        until(lambda: stage.box.child(name).pid != first, "the one restart that is allowed")
+        os.kill(stage.box.child(name).pid, signal.SIGKILL)
+        expect(page.locator(f"[data-camera={VICTIM}]")).to_contain_text("until it is started anew")
+        page.wait_for_function(IS_LIVE)  # the other three go on
+        page.close()
