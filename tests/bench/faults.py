@@ -292,12 +292,8 @@ def main() -> int:
     report.add(figures(names, played))
     report.rows = [vars(outcome) for outcome in played.outcomes]
     Console(width=140).print(table(names, played))
-    report.show(bars(names, arguments.runs, page=arguments.page))
     print("left behind: " + (", ".join(played.left) or "nothing"))
-    print(f"written to {report.write(arguments.data)}")
-    if report.missed:
-        print(f"missed: {', '.join(report.missed)}")
-    return 1 if report.missed else 0
+    return report.conclude(bars(names, arguments.runs, page=arguments.page), arguments.data)
 
 
 if __name__ == "__main__":
