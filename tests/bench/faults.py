@@ -245,7 +245,8 @@ def table(names: Sequence[str], played: Played) -> Table:
         "said max",
         "never said",
         "lost max",
-        "coloured still max",
+        "page: away max",
+        "page: still max",
     )
     shown = Table(title="fault drills")
     for column in columns:
