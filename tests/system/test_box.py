@@ -187,7 +187,7 @@ def test_a_camera_that_is_killed_is_seen_the_lesson_goes_on_and_it_comes_back(sh
         edge = box.child("edge", "--camera", "cam03")
         assert edge is not None
         edge.kill()
-        until(lambda: box.camera("cam03")["state"] != "ok", "camera 3 seen to be gone")
+        until(lambda: box.camera("cam03")["state"] == "lost", "camera 3 seen to be gone")
         frame = client.pose()
         assert (frame.states == JointState.SEEN).sum() >= 9
         until(lambda: box.camera("cam03")["used"] is True, "camera 3 back", STARTING_S)
