@@ -10,6 +10,7 @@ a recorder that returns: so the lesson that goes on is looked for first, and the
 A disk that is full or away may have room or be back at any time, and a box runs for weeks: what cannot be finished is tried again.
 """
 
+import contextlib
 import errno
 import os
 import shutil
@@ -213,6 +214,7 @@ def reopen(path: Path, stop: threading.Event | None = None) -> LessonWriter:
         UserError: the file has no header that can be read, so there is nothing to recover.
         OSError: it cannot be read or written, or there is no room for the copy of a damaged one; it is as it was.
     """
+    name = path
     file = path.open("r+b", buffering=0)
     try:
         header = read_header(path, file)
@@ -230,6 +232,8 @@ def reopen(path: Path, stop: threading.Event | None = None) -> LessonWriter:
         file.truncate()
     except BaseException:
         file.close()
+        with contextlib.suppress(OSError):  # By its old name it is tried again; its summary still says that it was ended.
+            path.rename(name)
         raise
     return LessonWriter(path, file, header, contents)
 

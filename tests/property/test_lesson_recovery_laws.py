@@ -214,6 +214,23 @@ def test_a_lesson_of_before_that_cannot_be_finished_is_tried_again_told_of_once_
             assert as_logged(list(lesson.parts())) == list(PARTS)
 
 
+def test_a_lesson_whose_begun_summary_cannot_be_cut_off_is_tried_again_and_not_taken_for_removed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    data, _ = written()
+    (tmp_path / f"a{PART_SUFFIX}").write_bytes(data[:-20])
+    left = Left(tmp_path)
+    with monkeypatch.context() as ill:
+        ill.setattr("services.lesson.recovery.survey", lambda *of: (SimpleNamespace(chunks=[1], end=-1), *survey(*of)[1:]))
+        for _ in range(3):
+            left.complete(threading.Event())
+            assert left.trouble is not None
+    left.complete(threading.Event())
+    assert left.trouble is None
+    with open_lesson(tmp_path / f"a{SUFFIX}") as lesson:
+        assert as_logged(list(lesson.parts())) == list(PARTS)
+
+
 def test_a_lesson_that_waits_is_tried_again_until_the_box_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     data, _ = written()
     (tmp_path / f"a{PART_SUFFIX}").write_bytes(data[:-20])
