@@ -4,6 +4,7 @@ import msgspec
 import pytest
 from playwright.sync_api import Page, Route, expect
 
+from models.process import Playback
 from tests.browser.attempts import tried
 from tests.browser.conftest import REPLAY_PICTURE_MS, Tablets
 from tests.browser.room import Room, Scene, with_scene
@@ -43,6 +44,24 @@ FAULTY = """() => {
     return [...cut, ...hidden.map(([a, b]) => `one over the other: ${words(a)}, ${words(b)}`)];
 }"""
 """Main labels that do not fit into their places, and those that lie over one another."""
+
+
+CUT = """words => {
+    const shown = [...document.querySelectorAll(words)].filter((e) => e.getClientRects().length > 0);
+    const wide = (e) => {
+        const free = e.cloneNode(true);
+        free.style.cssText = 'position: absolute; width: max-content; max-width: none';
+        e.after(free);
+        const [own, wanted] = [e, free].map((each) => each.getBoundingClientRect().width);
+        free.remove();
+        return wanted > own; // a part of a pixel costs a letter
+    };
+    const oneLine = (e) => getComputedStyle(e).whiteSpace === 'nowrap';
+    const cut = (e) => oneLine(e) ? wide(e) : e.scrollHeight > e.clientHeight + 1 || e.scrollWidth > e.clientWidth + 1;
+    const faulty = shown.filter(cut).map((e) => e.textContent.trim());
+    return document.documentElement.scrollWidth > window.innerWidth ? [...faulty, 'wider than the screen'] : faulty;
+}"""
+"""Which of some words are cut."""
 
 
 CODES = """code => {
@@ -129,6 +148,23 @@ def test_no_label_is_cut_or_covered_in_any_language(tablets: Tablets, room: Room
     held[0].continue_()
     shown.wait_until("d.stage === 'replay'")
     assert faulty(page) == {}
+
+
+@pytest.mark.parametrize(("width", "height"), [(1180, 820), (1024, 768), (800, 580), (390, 844), (844, 390)])
+def test_what_is_replayed_is_not_cut_nor_is_the_name_of_the_site(tablets: Tablets, width: int, height: int) -> None:
+    words = "header h1 span, [data-replay] .begun, [data-replay] time"
+    if width != 800:  # there a title may be cut, where day and time say which lesson it is
+        words += ", [data-replay] .name"
+    with Room(playback=Playback("7b.mcap", "7b, throwing", 1_795_000_000_000_000_000, 1.0, loop=True)) as room:
+        with_scene(room, replayed_s=2345.0)
+        page = tablets(width, height, has_touch=True, is_mobile=width < 900)
+        open_live(page, room)
+        expect(page.locator("[data-replay]")).to_contain_text("39:05")
+        cut = {}
+        for language in LANGUAGES:
+            speak(page, language)
+            cut[language] = page.evaluate(CUT, words)
+        assert not any(cut.values()), cut
 
 
 @pytest.mark.parametrize(

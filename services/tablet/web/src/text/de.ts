@@ -78,7 +78,7 @@ export const de: Words = {
 
   lesson: {
     recording: 'Aufnahme',
-    replay: (title, beganMs) => ['Wiedergabe', title, f.begun(beganMs)].filter(Boolean).join(' · '),
+    replay: (title) => ['Wiedergabe', title].filter(Boolean).join(' · '),
   },
 
   view: {

@@ -119,7 +119,7 @@ export const en = {
 
   lesson: {
     recording: 'Recording',
-    replay: (title: string, beganMs: number): string => ['Replay', title, f.begun(beganMs)].filter(Boolean).join(' · '),
+    replay: (title: string): string => ['Replay', title].filter(Boolean).join(' · '),
   },
 
   view: {

@@ -79,7 +79,7 @@ export const es: Words = {
 
   lesson: {
     recording: 'Grabando',
-    replay: (title, beganMs) => ['Repetición', title, f.begun(beganMs)].filter(Boolean).join(' · '),
+    replay: (title) => ['Repetición', title].filter(Boolean).join(' · '),
   },
 
   view: {

@@ -38,7 +38,7 @@ const UNITS: Record<string, string> = { deg: '°', cm: ' cm', pct: ' %', m_s: ' 
  * @param ofHeight what a percentage of the pupil's height is of
  */
 export function formats(locale: string, ofHeight: string): Formats {
-  const begins = new Intl.DateTimeFormat(locale, { dateStyle: 'long', timeStyle: 'short' });
+  const begins = new Intl.DateTimeFormat(locale, { dateStyle: 'medium', timeStyle: 'short' });
   const moments = new Intl.DateTimeFormat(locale, { dateStyle: 'medium', timeStyle: 'medium' });
   const ages = new Intl.RelativeTimeFormat(locale);
   const known = (value: number, digits: number): string =>

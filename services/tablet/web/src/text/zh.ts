@@ -42,7 +42,7 @@ export const zh: Words = {
 
   lesson: {
     recording: '录制中',
-    replay: (title, beganMs) => ['回放', title, f.begun(beganMs)].filter(Boolean).join(' · '),
+    replay: (title) => ['回放', title].filter(Boolean).join(' · '),
   },
 
   view: {
