@@ -42,12 +42,14 @@ def record(
     """Have the running box record a lesson, and end it on Ctrl-C."""
     from services.cli import record as recording  # noqa: PLC0415
     from services.cli.duration import parse_duration  # noqa: PLC0415
+    from services.logs import of_command  # noqa: PLC0415
     from services.site_file.reading import read_site  # noqa: PLC0415
 
     if (stop and (detach or title or length)) or (detach and length):
         given = "--stop" if stop else "--detach"
         raise UserError(f"{given} goes with no other option of 'kinebox record' but --site and --data; leave the others out")
     seconds = None if length is None else parse_duration(length, "--for")
+    of_command.configure()
     box, _ = read_site(site)
     if stop:
         recording.end(box, data)
@@ -149,7 +151,9 @@ def lessons_list(
     """List what was recorded, the newest first."""
     if context.invoked_subcommand is None:
         from services.cli import lessons  # noqa: PLC0415
+        from services.logs import of_command  # noqa: PLC0415
 
+        of_command.configure()
         lessons.require_data(data)
         lessons.listed(lessons.folder_of(data, site), json=json)
 
@@ -163,5 +167,7 @@ def lessons_delete(
 ) -> None:
     """Remove a lesson for good."""
     from services.cli import lessons  # noqa: PLC0415
+    from services.logs import of_command  # noqa: PLC0415
 
+    of_command.configure()
     lessons.delete(lesson, lessons.folder_of(data, site), sure=yes)

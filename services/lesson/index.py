@@ -186,7 +186,7 @@ class LessonIndex:
 
     def _remove(self, reason: sqlite3.DatabaseError) -> None:
         """Of a broken index nothing is needed."""
-        log.warning("the index of lessons is made anew", folder=str(self.folder), reason=str(reason))
+        log.warning("the list of lessons is made anew", folder=str(self.folder), reason=str(reason))
         try:
             for path in self.folder.glob(f"{NAME}*"):
                 path.unlink(missing_ok=True)
@@ -194,7 +194,7 @@ class LessonIndex:
             self._cannot_write(error)
 
     def _cannot_write(self, reason: Exception) -> None:
-        log.warning("the index of lessons cannot be written", folder=str(self.folder), reason=str(reason))
+        log.warning("the list of lessons cannot be written", folder=str(self.folder), reason=str(reason))
 
 
 def _connect(database: str) -> sqlite3.Connection:
@@ -206,10 +206,10 @@ def _connect(database: str) -> sqlite3.Connection:
         connection.execute("PRAGMA synchronous = NORMAL")
         (version,) = connection.execute("PRAGMA user_version").fetchone()
         if version not in (0, _VERSION):
-            raise sqlite3.DatabaseError(f"version {version}")
+            raise sqlite3.DatabaseError(f"it was of version {version}, and this KineBox writes {_VERSION}")
         connection.execute(f"CREATE TABLE IF NOT EXISTS {_TABLE}")
         if connection.execute(_CREATED).fetchone() != (f"CREATE TABLE {_TABLE}",):
-            raise sqlite3.DatabaseError("another's table of lessons")
+            raise sqlite3.DatabaseError("it was another's table of lessons")
         connection.execute(f"PRAGMA user_version = {_VERSION}")
         list(_rows(connection))
     except BaseException:
