@@ -1,6 +1,7 @@
 """Schema of the site file. Unknown keys are refused, every field has a description and bounds."""
 
 import shlex
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -11,6 +12,7 @@ from msgspec import Meta
 from models.config.endpoint import split_endpoint
 from models.config.host import require_host
 from models.config.path import require_path
+from models.config.wrong_key import ALLOWED, wrong_key
 from models.errors import UserError
 
 SITE_VERSION = 2
@@ -27,7 +29,14 @@ _LONGEST_S = 1e9
 _OFTENEST_S = 0.004
 """Between two pictures of the fastest camera."""
 
-Name = Annotated[str, Meta(pattern=r"^[a-z0-9][a-z0-9_-]{0,31}\Z", description="lower-case letters, digits, - and _")]
+Name = Annotated[
+    str,
+    Meta(
+        pattern=r"^[a-z0-9][a-z0-9_-]{0,31}\Z",
+        description="lower-case letters, digits, - and _",
+        extra={ALLOWED: "a name of 1 to 32 lower-case letters, digits, - and _, which begins with a letter or digit"},
+    ),
+]
 
 
 class Section(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -62,9 +71,14 @@ class CameraConfig(Section, frozen=True):
 class BusConfig(Section, frozen=True):
     """How the processes of the box talk to one another (Zenoh; the fusion process is the router)."""
 
-    endpoint: Annotated[str, Meta(pattern=r"^tcp/[^/]+:[0-9]{1,5}\Z", description="where the router listens")] = (
-        "tcp/127.0.0.1:7447"
-    )
+    endpoint: Annotated[
+        str,
+        Meta(
+            pattern=r"^tcp/[^/]+:[0-9]{1,5}\Z",
+            description="where the router listens",
+            extra={ALLOWED: '"tcp/ADDRESS:PORT", as "tcp/127.0.0.1:7447"'},
+        ),
+    ] = "tcp/127.0.0.1:7447"
 
 
 class TabletConfig(Section, frozen=True):
@@ -100,6 +114,7 @@ class EvaluationConfig(Section, frozen=True):
             pattern=r"^[a-z][a-z0-9_]{0,39}\Z",
             description="what pupils do when the box starts, until a tablet says otherwise: an action's name, such as "
             "`basketball_shot`; any: whichever it is",
+            extra={ALLOWED: 'an action\'s name, as "basketball_shot", or "any"'},
         ),
     ] = "any"
     language: Annotated[
@@ -204,6 +219,8 @@ def site_version(data: bytes, origin: Path | str) -> int:
     """
     try:
         version = msgspec.toml.decode(data, type=_Versioned).version
+    except msgspec.ValidationError as error:
+        raise UserError(f"site file {origin}: {_refused(data, _Versioned)}") from error
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise UserError(f"site file {origin}: {error}; {_what_to_do(error)}") from error
     except ValueError as error:  # Python reads no whole number of more than 4300 digits.
@@ -217,11 +234,13 @@ def site_version(data: bytes, origin: Path | str) -> int:
 
 
 def _what_to_do(error: Exception) -> str:
-    if isinstance(error, msgspec.ValidationError):
-        return "see docs/configuration.md for every key"
     if any(word in str(error) for word in ("character '\\n'", "Unterminated string", 'Expected "\'"')):
         return "a quote is not closed in that line, or before it; close it"
     return "it is no TOML there; look for a quote, bracket, value or equals sign that is missing, and correct it"
+
+
+def _refused(data: bytes, schema: type[msgspec.Struct]) -> str:
+    return wrong_key(tomllib.loads(data.decode()), schema)
 
 
 def decode_site(data: bytes, origin: Path | str) -> Site:
@@ -238,8 +257,8 @@ def decode_site(data: bytes, origin: Path | str) -> Site:
         )
     try:
         site: Site = msgspec.toml.decode(data, type=Site)
-    except msgspec.DecodeError as error:
-        raise UserError(f"site file {origin}: {error}; {_what_to_do(error)}") from error
+    except msgspec.ValidationError as error:
+        raise UserError(f"site file {origin}: {_refused(data, Site)}") from error
     try:
         for key, path in _paths(site):
             require_path(path, key)

@@ -69,7 +69,7 @@ def test_a_bad_site_file_is_one_line_and_code_2(site: Path) -> None:
     assert result.returncode == 2
     assert result.stdout == ""
     assert result.stderr.count("\n") == 1
-    assert "`inferense`" in result.stderr
+    assert "inferense: there is no such key" in result.stderr
 
 
 def test_an_old_site_file_is_refused_with_the_command_that_mends_it(site: Path) -> None:

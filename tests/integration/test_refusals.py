@@ -60,11 +60,11 @@ FAULTS: dict[str, tuple[Callable[[House], object], str]] = {
     ),
     "a key is unknown": (
         lambda house: replace_text(house.site, "[tablet]\n", "[tablet]\nspeling = 1\n"),
-        r"site file .*speling.*tablet.*see docs/configuration",
+        r"site file .*tablet.*speling.*see docs/configuration",
     ),
     "a value is out of bounds": (
         lambda house: replace_text(house.site, "[tablet]\n", "[inference]\ncpu_target = 7.0\n[tablet]\n"),
-        r"site file .*cpu_target.*see docs/configuration",
+        r"site file .*cpu_target: found 7\.0, but allowed is a number of more than 0\.1 and at most 0\.95; correct it",
     ),
     "the site is of a newer version": (
         lambda house: replace_text(house.site, f"version = {SITE_VERSION}", "version = 99"),

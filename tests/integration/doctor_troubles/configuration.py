@@ -10,7 +10,7 @@ CONFIGURATION: dict[str, Trouble] = {
     "the site file has an unknown key": Trouble(
         broken(lambda house: replace_text(house.site, "[tablet]\n", "[tablet]\nspeling = 1\n")),
         "site file",
-        "unknown field `speling`",
+        "speling: there is no such key",
         r"docs/configuration\.md",
     ),
     "the site file asks for faults on demand": Trouble(
