@@ -7,17 +7,12 @@ from typing import Annotated
 import typer
 
 from models.errors import UserError
+from services.cli.data_option import DataFolder
 from services.lesson.export.kinds import Format, format_of
 
-SiteFile = Annotated[Path, typer.Option("--site", help="The site file of the box that runs.", dir_okay=False)]
-LessonSite = Annotated[
-    Path | None, typer.Option("--site", help="The site file, if it names another folder of lessons.", dir_okay=False)
-]
-DataFolder = Annotated[Path, typer.Option("--data", help="The data folder, in which lessons are kept.", file_okay=False)]
-
-ReportSite = Annotated[
-    Path | None, typer.Option("--site", help="The site file to go by, in the place of the lesson's own.", dir_okay=False)
-]
+SiteFile = Annotated[Path, typer.Option("--site", help="The site file of the box that runs.")]
+LessonSite = Annotated[Path | None, typer.Option("--site", help="The site file, if it names another folder of lessons.")]
+ReportSite = Annotated[Path | None, typer.Option("--site", help="The site file to go by, in the place of the lesson's own.")]
 
 lessons_app = typer.Typer(help="List what was recorded, or remove some of it.")
 

@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-DataFolder = Annotated[Path, typer.Option("--data", help="The folder of the box, with its log.", file_okay=False)]
+from services.cli.data_option import DataFolder
+
 Since = Annotated[
     str | None, typer.Option(metavar="WHEN", help="Lines from then on: 90s, 10m, 1h30m ago, or a time like 2026-11-22T10:00.")
 ]
@@ -51,9 +52,7 @@ def logs_export(
     level: Level = "debug",
     process: Processes = None,
     grep: Grep = "",
-    site: Annotated[
-        Path | None, typer.Option(help="The site file; if left out, the one of the last start.", dir_okay=False)
-    ] = None,
+    site: Annotated[Path | None, typer.Option(help="The site file; if left out, the one of the last start.")] = None,
     replay: Replay = False,
 ) -> None:
     """Pack the log into a zip, to be sent.

@@ -18,10 +18,10 @@ except Exception as error:  # noqa: BLE001 - whatever a broken package raises; w
     )
 
 from services.cli import lesson_commands, log_commands, simulate_command, standard_commands
+from services.cli.data_option import DataFolder
 
-SiteFile = Annotated[Path, typer.Option("--site", help="The site file.", dir_okay=False)]
-SiteFileArgument = Annotated[Path, typer.Argument(metavar="FILE", help="The site file.", dir_okay=False)]
-DataFolder = Annotated[Path, typer.Option("--data", help="The folder with networks and footage.", file_okay=False)]
+SiteFile = Annotated[Path, typer.Option("--site", help="The site file.")]
+SiteFileArgument = Annotated[Path, typer.Argument(metavar="FILE", help="The site file.")]
 
 app = typer.Typer(
     no_args_is_help=True,

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from models.errors import UserError
+from services.cli.data_option import DataFolder
 
 
 def add_to(app: typer.Typer) -> None:
@@ -18,9 +19,7 @@ def simulate(
     plan: Annotated[
         str | None, typer.Argument(metavar="PLAN", help="A lesson plan: its file, or the name of one that --list lists.")
     ] = None,
-    data: Annotated[
-        Path, typer.Option("--data", help="The data folder, in which the lesson's films are put.", file_okay=False)
-    ] = Path("build"),
+    data: DataFolder = Path("build"),
     out: Annotated[
         Path | None, typer.Option("--out", help="Where the lesson shall be, instead of the data folder.", file_okay=False)
     ] = None,

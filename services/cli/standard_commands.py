@@ -6,12 +6,11 @@ from typing import Annotated
 
 import typer
 
-DataFolder = Annotated[
-    Path, typer.Option("--data", help="The data folder, with lessons and the school's own standards.", file_okay=False)
-]
+from services.cli.data_option import DataFolder
+
 Site = Annotated[
     Path | None,
-    typer.Option("--site", help="The site file, if its 'teaching' names another folder than the usual one.", dir_okay=False),
+    typer.Option("--site", help="The site file, if its 'teaching' names another folder than the usual one."),
 ]
 Seconds = float | None
 
@@ -44,9 +43,7 @@ def standard_record(
         bool, typer.Option("--again", help="Attempts are those that are found by what is taught today.", show_default=False)
     ] = False,
     data: DataFolder = Path("build"),
-    site: Annotated[
-        Path | None, typer.Option("--site", help="The site file to go by, in the place of the lesson's own.", dir_okay=False)
-    ] = None,
+    site: Annotated[Path | None, typer.Option("--site", help="The site file to go by, in the place of the lesson's own.")] = None,
 ) -> None:
     """Make an attempt of a lesson the standard of its action."""
     from services.support.environment import process_environment  # noqa: PLC0415
