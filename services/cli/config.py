@@ -4,15 +4,21 @@ import datetime as dt
 import difflib
 from pathlib import Path
 
+from models.errors import UserError
 from services.logs.printable import printable
 from services.site_file import rendering
 from services.site_file.migration import MigratedText, migrate_file, migrated_text
 from services.site_file.reading import read_file, read_site
+from services.support.teaching_files import is_outside
 
 
 def check(file: Path) -> str:
     """What there is to say of a good site file; UserError for one that is not."""
     site, rig = read_site(file)
+    teaching = site.evaluation.teaching
+    if is_outside(teaching):  # The box refuses it at its start; a lesson from elsewhere that has it can be read.
+        allowed = "a folder in the data folder, relative to it"
+        raise UserError(f'site file {file}: [evaluation] teaching: found "{teaching}", but allowed is {allowed}; correct it')
     return f"{file} is good: '{printable(site.name)}' with {len(rig)} calibrated cameras ({', '.join(rig.names)})\n"
 
 

@@ -81,10 +81,11 @@ def migrate_file(path: Path, now: dt.datetime) -> tuple[MigratedText, Path | Non
             migrated, but not safe against a power cut.
     """
     file = path.resolve()
-    texts = migrated_text(read_file(file, "site file"), path)
+    texts = migrated_text(read_file(path, "site file"), path)
     if texts.new == texts.old:
         return texts, None
     backup = file.with_name(f"{file.name}.bak-{texts.old_version}-{now.astimezone(dt.UTC):%Y%m%dT%H%M%SZ}")
+    named = backup if path.is_symlink() else path.with_name(backup.name)  # As the person named the file; of a link, where it is.
     try:
         _write_new(backup, file.read_bytes(), file.stat().st_mode)
         _replace(file, texts.new.encode())
@@ -98,9 +99,9 @@ def migrate_file(path: Path, now: dt.datetime) -> tuple[MigratedText, Path | Non
     except OSError as error:
         raise UserError(
             f"site file {path} was migrated, but a power cut may still undo it: {error.strerror}; mend its disk, "
-            f"and see that the file says 'version = {site_version(texts.new.encode(), path)}' (the old one is {backup})"
+            f"and see that the file says 'version = {site_version(texts.new.encode(), path)}' (the old one is {named})"
         ) from error
-    return texts, backup
+    return texts, named
 
 
 def _carry_over(container: Container | AbstractTable, old: Table, new: Table) -> None:

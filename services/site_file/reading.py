@@ -44,5 +44,7 @@ def read_file(path: Path, what: str) -> bytes:
         return path.read_bytes().removeprefix(codecs.BOM_UTF8)
     except FileNotFoundError as error:
         raise UserError(f"{what} {path} does not exist; correct its path") from error
+    except IsADirectoryError as error:
+        raise UserError(f"{what} {path} is a folder; name the file in it") from error
     except OSError as error:
         raise UserError(f"{what} {path} cannot be read: {error.strerror}; correct its path or its permissions") from error

@@ -63,11 +63,17 @@ def folder_of_own(data: Path, teaching: str) -> Path:
     (A link that somebody made in there may lead elsewhere.)
     """
     named = Path(teaching or SCHOOL_FOLDER)
-    if named.is_absolute() or ".." in named.parts:
+    if is_outside(teaching):
         raise UserError(
             f"folder '{teaching}' is not in the data folder {data}; correct 'teaching' under [evaluation] in the site file"
         )
     return data / named
+
+
+def is_outside(teaching: str) -> bool:
+    """Whether what the site file names cannot be in any data folder."""
+    named = Path(teaching)
+    return named.is_absolute() or ".." in named.parts
 
 
 def is_folder(place: Path) -> bool:

@@ -90,6 +90,24 @@ def test_an_old_site_file_is_refused_with_the_command_that_mends_it(site: Path) 
     assert "nothing to do" in kinebox("config", "migrate", str(site)).stdout
 
 
+@pytest.mark.parametrize("words", [("config", "check"), ("config", "show"), ("config", "migrate"), ("run", "--site")], ids=" ".join)
+def test_a_folder_in_the_place_of_a_site_file_is_one_line_that_says_what_to_give(site: Path, words: tuple[str, ...]) -> None:
+    result = kinebox(*words, str(site.parent))
+    assert (result.returncode, result.stdout) == (2, "")
+    assert result.stderr == f"kinebox: site file {site.parent} is a folder; name the file in it\n"
+
+
+@pytest.mark.parametrize("named", ["../ours", "/srv/ours"])
+def test_a_school_s_folder_that_the_box_would_refuse_is_refused_before(site: Path, named: str) -> None:
+    site.write_text(f'{site.read_text()}[evaluation]\nteaching = "{named}"\n')
+    result = kinebox("config", "check", str(site))
+    allowed = "allowed is a folder in the data folder, relative to it; correct it"
+    assert (result.returncode, result.stderr) == (
+        2,
+        f'kinebox: site file {site}: [evaluation] teaching: found "{named}", but {allowed}\n',
+    )
+
+
 def test_the_help_names_the_processes_that_there_are() -> None:
     told = " ".join(kinebox("process", "--help").stdout.split())
     *others, last = sorted(entry_points(group=PROCESSES).names - {REPLAY})

@@ -62,6 +62,18 @@ def test_the_old_file_is_kept_beside_the_new_one(old: Path) -> None:
     assert migrate_file(old, NOW)[1] is None
 
 
+def test_the_old_file_is_named_as_the_site_file_was(old: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(old.parent)
+    assert migrate_file(Path("site.toml"), NOW)[1] == Path(BACKUP)
+
+
+def test_of_a_link_the_old_file_is_named_where_it_is(old: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "links").mkdir()
+    (tmp_path / "links/site.toml").symlink_to(old)
+    monkeypatch.chdir(tmp_path / "links")
+    assert migrate_file(Path("site.toml"), NOW)[1] == old.with_name(BACKUP)
+
+
 def test_a_link_to_a_site_file_stays_a_link(old: Path, tmp_path: Path) -> None:
     link = tmp_path / "link.toml"
     link.symlink_to(old)
