@@ -63,7 +63,10 @@ def _running(order: Order, configuration: Configuration) -> Iterator[Examined]:
     boxes = gather_boxes()
     own = next((box for box in boxes if order.site is not None and box.site == order.site.resolve()), None)
     if configuration.site is None:
-        if boxes:
+        if boxes and configuration.error:
+            words = "not examined, since the site file that was named cannot be used; first do what is found of it"
+            yield Examined(facts=(Fact("running box", words),))
+        elif boxes:
             sites = ", ".join(str(box.site) for box in boxes)
             yield Examined(facts=(Fact("running box", f"not examined; name its site file with --site ({sites})"),))
         return
