@@ -39,7 +39,8 @@ def show(data: Path, query: Query, most: int, *, json: bool, follow: bool, repla
         lines, reader = last_lines(folder, query, most, torn=not follow)
         _print(lines, json=json)
         if most and not lines and not follow:
-            sys.stderr.write(f"no line of the log in {folder} matches\n")
+            there = f"; the processes with lines in it are {_processes(folder)}" if query.processes else ""
+            sys.stderr.write(f"no line of the log in {folder} matches{there}\n")
         while follow:
             time.sleep(_LOOK_AGAIN_S)
             _print(query.select(reader.poll()), json=json)
@@ -115,6 +116,10 @@ def _require_log(folder: Path) -> None:
     if not found:
         writer = "kinebox replay" if folder.name == REPLAY else "kinebox run"
         raise UserError(f"there is no log in {folder}; '{writer}' writes it there, or name another folder with --data")
+
+
+def _processes(folder: Path) -> str:
+    return ", ".join(sorted({line.record.process for line in wanted_lines(folder, Query()) if line.record is not None})) or "none"
 
 
 def _print(lines: Iterable[Line], *, json: bool) -> None:

@@ -96,6 +96,13 @@ def test_a_filter_that_finds_nothing_says_so_beside_what_is_printed(data: Path) 
     assert result.stderr == f"no line of the log in {data / 'logs'} matches\n"
 
 
+def test_a_process_that_there_is_not_is_told_with_those_that_there_are(data: Path) -> None:
+    result = kinebox_logs(data, "--process", "nobody")
+    assert (result.returncode, result.stdout) == (0, "")
+    there = "edge-cam01, edge-cam02, fusion, supervisor"
+    assert result.stderr == f"no line of the log in {data / 'logs'} matches; the processes with lines in it are {there}\n"
+
+
 def test_two_hundred_lines_are_shown_if_nobody_asks_for_more(data: Path) -> None:
     log_path(data / "logs", 1).write_bytes(b"damaged once\n" * 300)
     lines = kinebox_logs(data).stdout.splitlines()
