@@ -12,8 +12,9 @@ from models.messages.health import MachineHealth
 from models.messages.trouble import Trouble, TroubleCode
 from services.doctor.finding import Examined, Fact, Finding, Level
 from services.doctor.folders import KNOWN_BY, try_folder
+from services.support.amount import size_of
 from services.support.machine import MachineMeter, Sensors
-from services.support.machine_troubles import machine_troubles, size_of
+from services.support.machine_troubles import machine_troubles
 from services.support.processor import processor
 
 _LEVEL: dict[TroubleCode, Level] = {"disk_full": "fault", "memory_low": "fault", "hot": "fault"}

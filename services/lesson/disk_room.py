@@ -1,11 +1,12 @@
 """Whether a disk has room for a lesson: the recorder goes by it, and the doctor foretells it. Pure."""
 
 from models.config.site import LessonsConfig
+from services.support.amount import megabytes
 
 
 def shortage(free_mib: float, config: LessonsConfig) -> str:
     """Why a disk with so much left takes no lesson; empty if it does, or if how much is left is not known (NaN)."""
-    free_mb = free_mib * 2**20 / 1e6  # In the unit of the site file.
+    free_mb = megabytes(free_mib)
     if not free_mb < config.least_free_mb:
         return ""
     return f"{free_mb:.0f} MB are left on the disk, lessons.least_free_mb is {config.least_free_mb}"

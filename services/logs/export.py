@@ -146,6 +146,6 @@ def _machine() -> dict[str, Any]:
         "processor": processor().name,
         "cores": os.cpu_count(),
         "granted_cores": len(os.sched_getaffinity(0)),
-        "memory_mb": psutil.virtual_memory().total // 2**20,
+        "memory_mb": psutil.virtual_memory().total // 1_000_000,
         "up_since": time_text(dt.datetime.fromtimestamp(psutil.boot_time(), dt.UTC)),
     }

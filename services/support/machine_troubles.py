@@ -1,13 +1,12 @@
 """What is wrong with a machine, from what was measured of it. Pure."""
 
-import math
-
 from models.messages.health import MachineHealth
 from models.messages.trouble import MachineCode, Trouble
+from services.support.amount import megabytes, size_of
 
-DISK_FULL_MIB = 200.0
+DISK_FULL_MB = 200.0
 """A lesson of 45 minutes takes up to 175 MB; below this the next one does not fit."""
-DISK_LOW_MIB = 2000.0
+DISK_LOW_MB = 2000.0
 """Room for a dozen lessons."""
 MEMORY_LOW_MIB = 250.0
 """About what one process of the box needs to be started again."""
@@ -17,9 +16,10 @@ HOT_C = 90.0
 
 def machine_troubles(machine: MachineHealth) -> tuple[Trouble, ...]:
     """Everything wrong with a machine, worst first. A figure that is not known (NaN) is no trouble."""
+    disk_free_mb = megabytes(machine.disk_free_mib)
     found: list[tuple[bool, Trouble]] = [
-        (machine.disk_free_mib < DISK_FULL_MIB, _disk(machine, "disk_full", "is full")),
-        (DISK_FULL_MIB <= machine.disk_free_mib < DISK_LOW_MIB, _disk(machine, "disk_low", "is nearly full")),
+        (disk_free_mb < DISK_FULL_MB, _disk(machine, "disk_full", "is full")),
+        (DISK_FULL_MB <= disk_free_mb < DISK_LOW_MB, _disk(machine, "disk_low", "is nearly full")),
         (machine.memory_free_mib < MEMORY_LOW_MIB, _memory(machine)),
         (machine.temperature_c is not None and machine.temperature_c >= HOT_C, _heat(machine)),
         (machine.throttled, _throttled(machine)),
@@ -54,10 +54,3 @@ def _clock(machine: MachineHealth) -> Trouble:
     words = f"the clock was set {'forwards' if seconds > 0 else 'back'} by {abs(seconds):.1f} s in the last minute"
     remedy = "no figure is wrong by it, but the times in logs and of lessons jump; let a time service keep the clock"
     return Trouble("clock_set", words, remedy)
-
-
-def size_of(mib: float) -> str:
-    """An amount of memory or disk for people."""
-    if math.isnan(mib):
-        return "an unknown amount"
-    return f"{mib / 1024:.1f} GB" if mib >= 1024 else f"{mib:.0f} MB"

@@ -310,7 +310,7 @@ def test_a_teacher_is_told_of_the_machine_only_when_it_matters_and_the_technicia
     open_live(page, room)
     page.get_by_role("button", name="Details").click()
     details = page.locator("#details")
-    for words in ("The clock of the box was set", "The disk is nearly full", "63 °C", "3.0 GB", "1.5 GB", "0.1.0"):
+    for words in ("The clock of the box was set", "The disk is nearly full", "63 °C", "3.3 GB", "1.6 GB", "0.1.0"):
         expect(details.get_by_text(words, exact=True)).to_be_visible()
     message = page.locator(".messages")
     expect(message.get_by_text("disk")).to_have_count(0)

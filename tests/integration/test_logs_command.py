@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import psutil
 import pytest
 
 from models.config.site import SITE_VERSION
@@ -241,6 +242,7 @@ def test_the_log_of_a_box_with_a_crash_can_be_looked_at_and_sent(tmp_path: Path)
     assert manifest["versions"].keys() >= {"kinebox", "python", "numpy", "onnxruntime", "eclipse-zenoh", "typer"}
     assert manifest["versions"]["site_schema"] == str(SITE_VERSION)
     assert manifest["machine"].keys() >= {"system", "cores", "memory_mb"}
+    assert manifest["machine"]["memory_mb"] == psutil.virtual_memory().total // 1_000_000, "MB, not MiB"
     assert tomllib.loads(contents["site.toml"].decode()) == tomllib.loads(box.site.read_text())
     assert not any(b"hunter2" in content for content in contents.values())
 

@@ -10,7 +10,9 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from models.config.site import LessonsConfig
 from models.messages.health import MachineHealth
+from services.lesson.disk_room import shortage
 from services.supervisor.machine_watch import MachineWatch
 from services.support.machine import MachineMeter, Sensors, Throttling, clocks_ns, free_disk_mib, throttling
 from services.support.machine_troubles import machine_troubles
@@ -138,9 +140,9 @@ def test_memory_that_a_control_group_forbids_is_not_free(tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("changes", "code", "words"),
     [
-        ({"disk_free_mib": 150.0}, "disk_full", "the disk of the data folder is full: 150 MB are free"),
-        ({"disk_free_mib": 1536.0}, "disk_low", "the disk of the data folder is nearly full: 1.5 GB are free"),
-        ({"memory_free_mib": 90.0}, "memory_low", "memory is nearly gone: 90 MB are free"),
+        ({"disk_free_mib": 150.0}, "disk_full", "the disk of the data folder is full: 157 MB are free"),
+        ({"disk_free_mib": 1536.0}, "disk_low", "the disk of the data folder is nearly full: 1.6 GB are free"),
+        ({"memory_free_mib": 90.0}, "memory_low", "memory is nearly gone: 94 MB are free"),
         ({"temperature_c": 96.2}, "hot", "the processor is too hot: 96 °C"),
         ({"throttled": True}, "throttled", "the processor was slowed down in the last minute, .* \\(it is at 55 °C\\)"),
         ({"clock_step_ms": -1500.0}, "clock_set", "the clock was set back by 1.5 s in the last minute"),
@@ -151,6 +153,12 @@ def test_each_trouble_is_named_with_its_figure(changes: dict[str, float], code: 
     (trouble,) = machine_troubles(msgspec.structs.replace(GOOD, **changes))
     assert trouble.code == code
     assert re.fullmatch(words, trouble.words)
+
+
+def test_the_room_on_a_disk_is_the_same_figure_whoever_tells_it() -> None:
+    (trouble,) = machine_troubles(msgspec.structs.replace(GOOD, disk_free_mib=128.0))
+    assert "134 MB" in trouble.words
+    assert "134 MB" in shortage(128.0, LessonsConfig())
 
 
 def test_what_is_not_known_is_no_trouble() -> None:

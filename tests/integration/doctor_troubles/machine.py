@@ -23,10 +23,10 @@ def measured(**sensors: object) -> Stage:
 
 MACHINE: dict[str, Trouble] = {
     "the disk is full": Trouble(
-        measured(free_disk_mib=lambda _: 120.0), "disk", "the disk of the data folder is full: 120 MB", "delete old lessons"
+        measured(free_disk_mib=lambda _: 120.0), "disk", "the disk of the data folder is full: 126 MB", "delete old lessons"
     ),
     "the disk is nearly full": Trouble(
-        measured(free_disk_mib=lambda _: 1500.0), "disk", r"is nearly full: 1\.5 GB", "delete old lessons", "warning"
+        measured(free_disk_mib=lambda _: 1500.0), "disk", r"is nearly full: 1\.6 GB", "delete old lessons", "warning"
     ),
     "the disk of the lessons has no room for one": Trouble(
         measured(free_disk_mib=lambda folder: 300.0 if folder.name == "lessons" else 50_000.0),
@@ -35,7 +35,7 @@ MACHINE: dict[str, Trouble] = {
         "remove lessons that are not needed",
     ),
     "memory is nearly gone": Trouble(
-        measured(free_memory_mib=lambda: 80.0), "memory", "memory is nearly gone: 80 MB", "end other programs"
+        measured(free_memory_mib=lambda: 80.0), "memory", "memory is nearly gone: 84 MB", "end other programs"
     ),
     "the processor is too hot": Trouble(measured(temperature_c=lambda: 101.0), "processor", "too hot: 101 °C", "clean its fan"),
     "the processor is slowed down": Trouble(

@@ -15,9 +15,12 @@ describe('troubles of the machine', () => {
 });
 
 describe('sizes', () => {
-  it('are in the unit that people use', () => {
+  it('are in the decimal unit that people use, although messages count in MiB', () => {
     expect(en.formats.size(null)).toBe('–');
-    expect(en.formats.size(812)).toBe('812 MB');
-    expect(en.formats.size(1536)).toBe('1.5 GB');
+    expect(en.formats.size(812)).toBe('851 MB');
+    expect(en.formats.size(953.6)).toBe('1.0 GB');
+    expect(en.formats.size(1536)).toBe('1.6 GB');
+    expect(en.formats.megabytes(100)).toBe('105');
+    expect(en.formats.megabytes(null)).toBe('–');
   });
 });

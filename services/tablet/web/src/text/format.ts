@@ -11,7 +11,10 @@ export interface Formats {
   pair: (a: number | null, b: number | null, digits?: number) => string;
   percent: (share: number | null) => string;
   degrees: (celsius: number | null) => string;
-  size: (mb: number | null) => string;
+  /** Memory in MB, of an amount in MiB. */
+  megabytes: (mib: number | null) => string;
+  /** An amount in MiB with its unit, a decimal one as everywhere else that people read. */
+  size: (mib: number | null) => string;
   /** How fast something is played. */
   pace: (factor: number) => string;
   /** So many minutes ago; from an hour on in hours. */
@@ -29,6 +32,7 @@ export interface Estimate {
 
 /** In the place of what is not known. */
 export const NONE = '–';
+const MB_OF_MIB = 2 ** 20 / 1e6;
 const MINUS = '\u2212';
 /** Of measures, as they stand behind a number. */
 const UNITS: Record<string, string> = { deg: '°', cm: ' cm', pct: ' %', m_s: ' m/s', s: ' s', deg_s: ' °/s' };
@@ -57,9 +61,11 @@ export function formats(locale: string, ofHeight: string): Formats {
     pair: (a, b, digits = 0) => `${number(a, digits)} / ${number(b, digits)}`,
     percent: (share) => (share === null ? NONE : `${known(100 * share, 0)} %`),
     degrees: (celsius) => (celsius === null ? NONE : `${known(celsius, 0)} °C`),
-    size: (mb) => {
-      if (mb === null) return NONE;
-      return mb < 1024 ? `${known(mb, 0)} MB` : `${known(mb / 1024, 1)} GB`;
+    megabytes: (mib) => number(mib === null ? null : mib * MB_OF_MIB),
+    size: (mib) => {
+      if (mib === null) return NONE;
+      const mb = mib * MB_OF_MIB;
+      return mb < 999.5 ? `${known(mb, 0)} MB` : `${known(mb / 1000, 1)} GB`;
     },
     pace: (factor) => `${{ 0.25: '¼', 0.5: '½' }[factor] ?? factor.toLocaleString(locale)}×`,
     ago: (minutes) => (minutes < 60 ? ages.format(-minutes, 'minute') : ages.format(-Math.floor(minutes / 60), 'hour')),
