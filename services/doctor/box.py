@@ -15,9 +15,10 @@ from services.doctor.cameras import does_work, is_held_up, judge_camera
 from services.doctor.finding import Examined, Fact, Finding, Level
 from services.doctor.lateness import LESS_TO_DO, judge_lateness, typical_ms
 from services.doctor.listen import Heard
-from services.doctor.machine import machine_finding
+from services.doctor.machine import DISK, machine_finding
 from services.doctor.processes import RunningBox
 from services.support.machine_troubles import machine_troubles
+from services.support.no_room import WORDS as NO_ROOM
 
 OFTEN = 3
 RECENT_NS = 600 * 1_000_000_000
@@ -208,7 +209,9 @@ def _own_word(name: str, trouble: Trouble, box: BoxFacts) -> Finding:
     place = _PLACES.get(trouble.code)
     words = f"{name} says: {trouble.words}" if place is None else trouble.words
     remedy = trouble.remedy or f"wait; if it stays so, read `{_log_of(name, box)}`"
-    return Finding(_LEVELS.get(trouble.code, "warning"), place or name, words, f"{name}'s word on the bus", remedy)
+    # The log lies in the data folder: why it is not kept there is told of its disk.
+    cause = DISK if trouble.code == "log_not_kept" and trouble.words.endswith(tuple(NO_ROOM)) else ""
+    return Finding(_LEVELS.get(trouble.code, "warning"), place or name, words, f"{name}'s word on the bus", remedy, cause)
 
 
 def _log_of(process: str, box: BoxFacts) -> str:
@@ -245,7 +248,7 @@ def _unreadable(box: BoxFacts) -> Iterator[Finding]:
 def _machine(box: BoxFacts) -> Iterator[Finding]:
     machine = _machine_of(box)
     for trouble in machine_troubles(machine) if machine is not None else ():
-        yield machine_finding(trouble)
+        yield machine_finding(trouble, box.data)
 
 
 def _machine_of(box: BoxFacts) -> MachineHealth | None:

@@ -22,6 +22,7 @@ class Finding:
         what: what is wrong, in one line.
         known_by: what was looked at to know it.
         remedy: what to do.
+        cause: what it comes from, where others may come from the same; only one of those is told. Empty where there is none.
     """
 
     level: Level
@@ -29,6 +30,7 @@ class Finding:
     what: str
     known_by: str
     remedy: str
+    cause: str = ""
 
 
 @dataclass(frozen=True)
@@ -48,11 +50,13 @@ class Examined:
 
     @classmethod
     def join(cls, parts: Iterable["Examined"]) -> "Examined":
-        """Everything, the worst first and otherwise in the order in which it was found."""
+        """Everything, the worst first and otherwise in the order in which it was found; of what has one cause, the first then."""
         together = list(parts)
-        findings = dict.fromkeys(finding for part in together for finding in part.findings)
-        ordered = sorted(findings, key=lambda finding: _LEVELS.index(finding.level))
-        return cls(tuple(ordered), tuple(fact for part in together for fact in part.facts))
+        ordered = sorted((each for part in together for each in part.findings), key=lambda each: _LEVELS.index(each.level))
+        findings: dict[Finding | str, Finding] = {}
+        for finding in ordered:
+            findings.setdefault(finding.cause or finding, finding)
+        return cls(tuple(findings.values()), tuple(fact for part in together for fact in part.facts))
 
 
 def fault_of(where: str, error: UserError | str, known_by: str) -> Finding:

@@ -11,7 +11,7 @@ import psutil
 from models.messages.health import MachineHealth
 from models.messages.trouble import Trouble, TroubleCode
 from services.doctor.finding import Examined, Fact, Finding, Level
-from services.doctor.folders import KNOWN_BY, try_folder
+from services.doctor.folders import KNOWN_BY, FolderProblem, try_folder
 from services.support.amount import size_of
 from services.support.machine import MachineMeter, Sensors
 from services.support.machine_troubles import machine_troubles
@@ -21,13 +21,13 @@ _LEVEL: dict[TroubleCode, Level] = {"disk_full": "fault", "memory_low": "fault",
 """The other troubles are warnings."""
 _PLACE: dict[TroubleCode, str] = {"disk_full": "disk", "disk_low": "disk", "memory_low": "memory", "clock_set": "clock"}
 _KNOWN_BY: dict[TroubleCode, str] = {
-    "disk_full": "the file system of the data folder",
-    "disk_low": "the file system of the data folder",
     "memory_low": "the kernel's and the control group's count of free memory",
     "hot": "the processor's own sensor",
     "throttled": "the processor's counters of throttling",
     "clock_set": "comparing the wall clock with CLOCK_MONOTONIC",
 }
+DISK = "disk"
+"""The cause of all that comes from a data folder's disk without room."""
 EARLIEST = dt.datetime(2026, 11, 1, tzinfo=dt.UTC)
 """No KineBox is older; a clock before this was never set, as on a box without a battery for it."""
 FEW_CORES = 1.9
@@ -46,7 +46,7 @@ class MachineFacts:
         memory_mib: in all.
         wall: the machine's date and time.
         data: the data folder.
-        data_problem: why nothing can be read from or written to the data folder; empty if both can.
+        data_problem: why nothing can be read from or written to the data folder; None if both can.
     """
 
     health: MachineHealth
@@ -57,7 +57,7 @@ class MachineFacts:
     memory_mib: float
     wall: dt.datetime
     data: Path
-    data_problem: str
+    data_problem: FolderProblem | None
 
 
 def gather_machine(data: Path, sensors: Sensors) -> MachineFacts:
@@ -79,7 +79,7 @@ def gather_machine(data: Path, sensors: Sensors) -> MachineFacts:
 
 def judge_machine(machine: MachineFacts) -> Examined:
     """What is wrong with it, and what it is."""
-    findings = [machine_finding(trouble) for trouble in machine_troubles(machine.health)]
+    findings = [machine_finding(trouble, machine.data) for trouble in machine_troubles(machine.health)]
     findings += [finding for finding in (_architecture(machine), _cores(machine), _clock(machine), _folder(machine)) if finding]
     health = machine.health
     heat = "" if health.temperature_c is None else f", {health.temperature_c:.0f} °C"
@@ -92,10 +92,12 @@ def judge_machine(machine: MachineFacts) -> Examined:
     return Examined(tuple(findings), facts)
 
 
-def machine_finding(trouble: Trouble) -> Finding:
-    """The finding for a trouble of a machine."""
+def machine_finding(trouble: Trouble, data: Path) -> Finding:
+    """The finding for a trouble of a machine with that data folder; the doctor and the box that runs tell it in unequal figures."""
     level, place = _LEVEL.get(trouble.code, "warning"), _PLACE.get(trouble.code, "processor")
-    return Finding(level, place, trouble.words, _KNOWN_BY[trouble.code], trouble.remedy)
+    if place == "disk":
+        return Finding(level, place, trouble.words, f"the file system of {data}", trouble.remedy, cause=DISK)
+    return Finding(level, place, trouble.words, _KNOWN_BY[trouble.code], trouble.remedy, cause=trouble.code)
 
 
 def _architecture(machine: MachineFacts) -> Finding | None:
@@ -132,7 +134,13 @@ def _clock(machine: MachineFacts) -> Finding | None:
 
 
 def _folder(machine: MachineFacts) -> Finding | None:
-    if not machine.data_problem:
+    problem = machine.data_problem
+    if problem is None:
         return None
+    words = f"{machine.data} {problem.words}"
+    if problem.full:
+        # Told only where the disk's free bytes do not tell it.
+        remedy = "delete old lessons or other files on its disk: it has too many files, or this user may have no more on it"
+        return Finding("fault", "data folder", words, KNOWN_BY, remedy, cause=DISK)
     remedy = "correct --data, or the folder's owner and rights, or mend its disk"
-    return Finding("fault", "data folder", f"{machine.data} {machine.data_problem}", KNOWN_BY, remedy)
+    return Finding("fault", "data folder", words, KNOWN_BY, remedy)

@@ -22,6 +22,8 @@ def as_text(examined: Examined) -> str:
 def as_json(examined: Examined) -> str:
     """An object with `good`, `findings` and `facts`."""
     findings, facts = (list(map(asdict, entries)) for entries in (examined.findings, examined.facts))
+    for finding in findings:
+        del finding["cause"]  # The others that came from it are left out already.
     return json.dumps({"good": not findings, "findings": findings, "facts": facts}, indent=2, ensure_ascii=False) + "\n"
 
 

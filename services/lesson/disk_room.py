@@ -1,7 +1,12 @@
 """Whether a disk has room for a lesson: the recorder goes by it, and the doctor foretells it. Pure."""
 
+from pathlib import Path
+
 from models.config.site import LessonsConfig
 from services.support.amount import megabytes
+
+LESSON_MB = 200
+"""A lesson of 45 minutes takes up to 175 MB."""
 
 
 def shortage(free_mib: float, config: LessonsConfig) -> str:
@@ -10,3 +15,9 @@ def shortage(free_mib: float, config: LessonsConfig) -> str:
     if not free_mb < config.least_free_mb:
         return ""
     return f"{free_mb:.0f} MB are left on the disk, lessons.least_free_mb is {config.least_free_mb}"
+
+
+def make_room(folder: Path, config: LessonsConfig) -> str:
+    """What to do about it: where, and how much the next lesson needs."""
+    needed_mb = config.least_free_mb + LESSON_MB
+    return f"remove lessons that are not needed, or other files on the disk of {folder}, until {needed_mb} MB are free"

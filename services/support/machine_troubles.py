@@ -30,7 +30,8 @@ def machine_troubles(machine: MachineHealth) -> tuple[Trouble, ...]:
 
 def _disk(machine: MachineHealth, code: MachineCode, how: str) -> Trouble:
     words = f"the disk of the data folder {how}: {size_of(machine.disk_free_mib)} are free"
-    return Trouble(code, words, "delete old lessons or other files on it, or use a larger disk")
+    remedy = f"delete old lessons or other files on it until {DISK_LOW_MB / 1000:.1f} GB are free, or use a larger disk"
+    return Trouble(code, words, remedy)
 
 
 def _memory(machine: MachineHealth) -> Trouble:

@@ -16,6 +16,7 @@ from models.messages.health import CameraHealth, FusionHealth, Health, MachineHe
 from models.messages.trouble import MachineCode, Trouble, TroubleCode
 from services.doctor.box import BUSY_SHARE, BoxFacts, judge_box
 from services.doctor.finding import Examined, Fact, Finding, fault_of
+from services.doctor.folders import FolderProblem
 from services.doctor.lateness import LATE_MS, Age
 from services.doctor.listen import Heard
 from services.doctor.machine import MachineFacts, judge_machine
@@ -281,12 +282,12 @@ def test_doctor_and_page_call_the_same_figures_late_and_the_same_machine_busy() 
         ({"flags": frozenset()}, "processor"),
         ({"health": msgspec.structs.replace(MACHINE, granted_cores=0.5)}, "processor"),
         ({"wall": dt.datetime(2020, 1, 1, tzinfo=dt.UTC)}, "clock"),
-        ({"data_problem": "does not exist"}, "data folder"),
+        ({"data_problem": FolderProblem("does not exist")}, "data folder"),
     ],
 )
 def test_a_machine_that_will_not_do_is_found(changes: dict[str, object], where: str) -> None:
     wall = dt.datetime(2027, 1, 1, tzinfo=dt.UTC)
-    good = MachineFacts(MACHINE, "a processor", "x86_64", frozenset({"avx2"}), 4, 8000.0, wall, Path("build"), "")
+    good = MachineFacts(MACHINE, "a processor", "x86_64", frozenset({"avx2"}), 4, 8000.0, wall, Path("build"), None)
     assert judge_machine(good).findings == ()
     (finding,) = judge_machine(replace(good, **changes)).findings  # type: ignore[arg-type]
     assert finding.where == where
