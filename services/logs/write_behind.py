@@ -61,12 +61,19 @@ class WriteBehind:
         if self._behind_since_s is None:
             self._hand_over(partial(self._writer.try_again, time))
 
-    def close(self) -> int:
-        """Have everything written and let go of the files; how many lines were given up, as the disk did not take them in time."""
+    def close(self, held_up: Callable[[], None]) -> int:
+        """Have everything written and let go of the files; how many lines were given up, as the disk did not take them in time.
+
+        Args:
+            held_up: called before the disk is waited for longer than for a moment.
+        """
         with self._changed:
             self._ends = True
             self._changed.notify_all()
-        self._thread.join(END_WITHIN_S)
+        self._thread.join(PATIENCE_S)
+        if self._thread.is_alive():
+            held_up()
+            self._thread.join(END_WITHIN_S)
         if self._thread.is_alive():
             with self._changed:
                 return len(self._waiting) + self._left_out

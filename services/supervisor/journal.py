@@ -22,14 +22,14 @@ from services.logs.files import LATEST
 from services.logs.printable import printable
 from services.logs.readable import details, local, speaker
 from services.logs.record import LogRecord, record_of
-from services.logs.write_behind import HELD_UP, WriteBehind
+from services.logs.write_behind import END_WITHIN_S, HELD_UP, WriteBehind
 from services.logs.writer import IN_USE, LogWriter
 from services.supervisor.console import Console
 from services.supervisor.traceback_lines import TracebackLines
+from services.support.no_room import WORDS as NO_ROOM
 
 _LOUD = frozenset({"warning", "error", "critical"})
 _SUPERVISOR = "supervisor"
-_REMEDY = "make room on its disk, mend it, or correct the folder's owner and rights"
 _TRY_AGAIN_S = 1.0
 _DEFAULTS = LogsConfig()
 
@@ -57,6 +57,7 @@ class Journal:
         self._output = Console(sys.stdout)
         self._command = command
         self._tracebacks: dict[str, TracebackLines] = defaultdict(TracebackLines)
+        self._most_mb = config.max_file_mb * config.max_files
         self._writer = WriteBehind(LogWriter(folder, int(config.max_file_mb * 1e6), config.max_files))
         self._next_try_s = time.monotonic() + _TRY_AGAIN_S
         self.trouble: Trouble | None = None
@@ -111,11 +112,15 @@ class Journal:
         """Close the file, and let go of the console."""
         for process in self._tracebacks:
             self._end_traceback(process)
-        if given_up := self._writer.close():
+        if given_up := self._writer.close(self._waits):
             event = f"{given_up} lines of the log were given up: {HELD_UP}"
             self._show(record_of({"event": event, "level": "warning"}, _SUPERVISOR, _now()))
         self._console.close()
         self._output.close()
+
+    def _waits(self) -> None:
+        event = f"waiting up to {END_WITHIN_S:.0f} s for the disk of {self.path} to take the last lines of the log"
+        self._show(record_of({"event": event}, _SUPERVISOR, _now()))
 
     def _end_traceback(self, process: str) -> None:
         if (ended := self._tracebacks[process].end()) is not None:
@@ -130,12 +135,22 @@ class Journal:
 
     def _tell_problem(self) -> None:
         reason, before = self._writer.problem, self.trouble
-        remedy = "" if reason == IN_USE else _REMEDY
-        self.trouble = Trouble("log_not_kept", f"nothing is kept in {self.path}: {reason}", remedy) if reason else None
+        self.trouble = (
+            Trouble("log_not_kept", f"nothing is kept in {self.path}: {reason}", self._remedy(reason)) if reason else None
+        )
         if self.trouble is not None and before is None:
             self._show(record_of({"event": one_line((self.trouble,)), "level": "warning"}, _SUPERVISOR, _now()))
         elif before is not None and self.trouble is None:
             self._show(record_of({"event": f"what is said is kept in {self.path} again"}, _SUPERVISOR, _now()))
+
+    def _remedy(self, reason: str) -> str:
+        if reason == IN_USE:
+            return ""  # It is in the words.
+        if reason == HELD_UP:
+            return "see what else writes on that disk; if it does not answer at all, check its cable and replace it"
+        if reason in NO_ROOM:
+            return f"make room on its disk: the log takes up to {self._most_mb:.0f} MB"
+        return "correct the folder's owner and rights or what lies in its place, or mend its disk"
 
     def _show(self, record: LogRecord) -> None:
         clock = local(record.time).strftime("%H:%M:%S")

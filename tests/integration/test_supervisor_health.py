@@ -63,6 +63,6 @@ def test_a_log_that_cannot_be_written_is_said_until_it_can(tmp_path: Path) -> No
         with HealthWatch(box) as watch:
             said = watch.wait_for("supervisor", "degraded")
             assert [trouble.code for trouble in said.troubles] == ["log_not_kept"]
-            assert said.reason.startswith(f"nothing is kept in {logs / 'kinebox.log'}: File exists; make room")
+            assert said.reason.startswith(f"nothing is kept in {logs / 'kinebox.log'}: File exists; correct the folder")
             logs.unlink()
             watch.wait_for("supervisor", "ok")

@@ -3,6 +3,7 @@
 import fcntl
 import io
 import os
+import re
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -129,6 +130,8 @@ def test_that_a_disk_stalls_is_said_without_another_line_and_that_it_goes_on_too
     until(told, "the trouble")
     assert journal.trouble is not None
     assert (journal.trouble.code, journal.trouble.words) == ("log_not_kept", f"nothing is kept in {journal.path}: {HELD_UP}")
+    assert "does not answer" in journal.trouble.remedy
+    assert not re.search("room|rights", journal.trouble.remedy), "neither helps a disk that stalls"
 
     def over() -> bool:
         disk.goes_on()
@@ -175,3 +178,27 @@ def test_a_disk_that_never_goes_on_does_not_hold_up_the_end_which_says_what_was_
     disk.goes_on()
     given_up = len(said) - len(disk.events())
     assert f"{given_up} lines of the log were given up" in console.getvalue()
+
+
+def test_whoever_waits_at_the_end_for_a_disk_that_stalls_is_told_for_what_before_and_nobody_else_is(
+    disk: StalledDisk, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    console = io.StringIO()
+    journal = Journal(disk.folder, console)
+    say(journal, LINES)
+    end = threading.Thread(target=journal.close, daemon=True)
+    end.start()
+    told = f"waiting up to 10 s for the disk of {journal.path} to take the last lines of the log"
+    until(lambda: told in console.getvalue(), "the word about the wait")
+    assert end.is_alive()
+
+    def is_done() -> bool:
+        disk.goes_on()
+        return not end.is_alive()
+
+    until(is_done, "the end of the log")
+    console = io.StringIO()
+    journal = Journal(tmp_path_factory.mktemp("quick"), console)
+    say(journal, LINES)
+    journal.close()
+    assert console.getvalue() == ""

@@ -1,4 +1,6 @@
+import errno
 import io
+import os
 import re
 import time
 from collections.abc import Iterator
@@ -8,7 +10,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from services.logs.writer import IN_USE
+from services.logs.writer import IN_USE, LogWriter
 from services.supervisor.journal import Journal
 
 
@@ -206,6 +208,21 @@ def test_a_second_box_on_a_folder_says_what_to_do_and_shows_everything(tmp_path:
     ]
 
 
+def test_a_log_whose_disk_is_full_says_how_much_room_it_takes_and_nothing_of_rights(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> int:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(LogWriter, "_append", full)
+    journal = Journal(tmp_path / "logs", io.StringIO())
+    journal.note("a line")
+    journal.settle()
+    assert journal.trouble is not None
+    assert journal.trouble.remedy == "make room on its disk: the log takes up to 64 MB"
+    journal.close()
+
+
 def test_a_quiet_log_notices_that_it_can_be_kept_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     now_s = time.monotonic()
     monkeypatch.setattr(time, "monotonic", lambda: now_s)
@@ -213,7 +230,7 @@ def test_a_quiet_log_notices_that_it_can_be_kept_again(tmp_path: Path, monkeypat
     journal = Journal(tmp_path / "logs", io.StringIO())
     assert journal.trouble is not None
     assert (journal.trouble.code, journal.trouble.words) == ("log_not_kept", f"nothing is kept in {journal.path}: File exists")
-    assert journal.trouble.remedy.startswith("make room")
+    assert "what lies in its place" in journal.trouble.remedy
     (tmp_path / "logs").unlink()
     now_s += 1.0
     journal.settle()

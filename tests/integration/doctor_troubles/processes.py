@@ -82,7 +82,7 @@ PROCESSES: dict[str, Trouble] = {
         STANDING.stage(_stop("tablet")), "tablet", r"the page at port \d+ does not answer", "wait some seconds"
     ),
     "the log cannot be written": Trouble(
-        log_that_cannot_be_written, "log", r"nothing is kept in .*kinebox\.log: File exists", "make room on its disk"
+        log_that_cannot_be_written, "log", r"nothing is kept in .*kinebox\.log: File exists", "what lies in its place"
     ),
     "the box is of another version": Trouble(
         another_version, "version", r"the box that runs is KineBox 9\.9\.9", "start it anew with this version", "warning"
