@@ -194,6 +194,11 @@ class LessonWriter:
         return self._contents.end
 
     @property
+    def to_finish(self) -> int:
+        """Bytes that `finish` adds to it."""
+        return len(_summary(self._contents))
+
+    @property
     def ended(self) -> bool:
         """Whether its recording was ended, so that it is only to be finished."""
         return self.path.name.endswith(ENDED_SUFFIX)

@@ -21,7 +21,7 @@ from models.messages.health import RecorderHealth
 from models.messages.lesson import FusionLog, SegmentRequest
 from models.messages.trouble import Trouble
 from services.lesson import told_to_stop
-from services.lesson.disk_room import shortage
+from services.lesson.disk_room import make_room, shortage
 from services.lesson.folder_lock import is_locked, lock
 from services.lesson.following import Following
 from services.lesson.free_names import numbered
@@ -31,6 +31,7 @@ from services.lesson.lesson_file import LessonWriter, lesson_of
 from services.lesson.lesson_header import LessonHeader
 from services.lesson.recovery import Left
 from services.support.machine import free_disk_mib
+from services.support.no_room import is_no_room
 
 AUTOMATIC_TITLE = "Recorded automatically"
 SILENT_NS = 5_000_000_000
@@ -41,10 +42,13 @@ RETRY_NS = 30_000_000_000
 log = structlog.get_logger()
 
 _NAME_LENGTH = 40
-_REMOVE = "remove lessons that are not needed"
-_MEND = "make room on the disk, or put it back or replace it"
+_MEND = "put the disk back, mend or replace it"
 _TAKEN_AWAY = "its file was removed, renamed or replaced"
 _LEAVE_ALONE = f"leave files that end with '{PART_SUFFIX}' alone, and begin another lesson"
+
+
+def _never() -> bool:
+    return False
 
 
 @dataclass
@@ -87,8 +91,8 @@ class Recorder:
         by_itself = config.automatic and not told_to_stop.is_noted(folder, run_ns)
         self._automatic_ns: int | None = clock_ns() if by_itself else None
         self._ended: Trouble | None = None
-        self._ended_until = ""
-        """The lesson with whose completion `_ended` is over; empty if only another lesson ends it."""
+        self._is_over: Callable[[], bool] = _never
+        """Whether `_ended` needs not be said any more, although no other lesson has begun."""
         self._lacking = ""  # Why the disk would take no lesson; looked at while there is none.
         self._running: _Running | None = None
         self._lock: BinaryIO | None = None
@@ -100,18 +104,19 @@ class Recorder:
         if self._running is not None:
             return
         if lacking := self._shortage():
-            self._trouble(f"no lesson was begun: {lacking}", _REMOVE)
+            self._trouble(f"no lesson was begun: {lacking}", self._make_room(), lambda: not self._shortage())
             return
         header = self._header(title)
         try:
             writer = self._create(header)
         except OSError as error:
-            self._trouble(f"no lesson was begun: {error.strerror} at {self._folder}", "make room or correct lessons.folder")
+            remedy = self._make_room() if is_no_room(error) else "correct lessons.folder or the folder's rights, or mend its disk"
+            self._trouble(f"no lesson was begun: {error.strerror} at {self._folder}", remedy)
             return
         except UserError as error:
             self._trouble(f"no lesson was begun: {error}", "")
             return
-        self._ended, self._ended_until = None, ""
+        self._all_is_well()
         self._begin(writer, asked_ns=asked_ns)
         log.info("lesson begins", lesson=_name(writer), title=title)
 
@@ -129,7 +134,7 @@ class Recorder:
             self._automatic_ns = None
             self._note_wish()
         if self._running is not None:
-            self._ended, self._ended_until = None, ""
+            self._all_is_well()
         self._finish()
 
     def close(self) -> None:
@@ -153,7 +158,7 @@ class Recorder:
         try:
             running.writer.append(part, accepted.gap)
         except OSError as error:
-            self._finish(error.strerror or str(error), _MEND)
+            self._finish(error.strerror or str(error), self._against(error))
             return
         if accepted.gap:
             log.warning("gap in the lesson", lesson=_name(running.writer), reason=accepted.gap)
@@ -167,21 +172,21 @@ class Recorder:
         """Once a second: watch disk and file, begin what is automatic."""
         if self._running is None and self._automatic_ns is not None and self._clock_ns() >= self._automatic_ns:
             self.start(AUTOMATIC_TITLE)
-        if self._ended_until and not self._left.waits(self._ended_until):
-            self._ended, self._ended_until = None, ""
+        if self._is_over():
+            self._all_is_well()
         if self._running is None:
             self._lacking = self._shortage()
             return
         try:
             in_place = self._running.writer.in_place
         except OSError as error:
-            self._finish(error.strerror or str(error), _MEND)
+            self._finish(error.strerror or str(error), self._against(error))
             return
         if not in_place:
             self._finish()
             return
         if lacking := self._shortage():
-            self._finish(lacking, _REMOVE)
+            self._finish(lacking, self._make_room())
 
     @property
     def trouble(self) -> Trouble | None:
@@ -243,26 +248,37 @@ class Recorder:
             return
         except OSError as error:
             writer.close()
-            reason = error.strerror or str(error)
-            self._left.hand_over(writer.path, reason)
+            self._left.hand_over(writer, error)
             # Who wished its end is told that it is not finished; why it had to end is to be known also when it is.
-            self._trouble(f"lesson {name} ended: {why or reason}", remedy or _MEND, until="" if why else lesson_of(writer.path))
+            words = f"lesson {name} ended: {why or error.strerror or error}"
+            lesson = lesson_of(writer.path)
+            is_over = _never if why else lambda: not self._left.waits(lesson)
+            self._trouble(words, remedy or self._against(error), is_over)
             return
         LessonIndex(self._folder).note(writer, path)
         log.info("lesson ends", lesson=name, seconds=round(writer.recorded_s, 1), mb=round(writer.size / 1e6, 2), gaps=writer.gaps)
 
-    def _trouble(self, words: str, remedy: str, until: str = "") -> None:
-        """Say it until another lesson begins, or the one of the name `until` is finished."""
+    def _trouble(self, words: str, remedy: str, is_over: Callable[[], bool] = _never) -> None:
+        """Say it until another lesson begins, or it is over."""
         trouble = Trouble("not_recording", words, remedy)
         if trouble != self._ended:
             log.warning("not recording", reason=words, remedy=remedy)
-        self._ended, self._ended_until = trouble, until
+        self._ended, self._is_over = trouble, is_over
         if self._automatic_ns is not None:
             self._automatic_ns = self._clock_ns() + RETRY_NS
 
+    def _all_is_well(self) -> None:
+        self._ended, self._is_over = None, _never
+
+    def _against(self, error: OSError) -> str:
+        return self._make_room() if is_no_room(error) else _MEND
+
+    def _make_room(self) -> str:
+        return make_room(self._folder, self._config)
+
     def _no_room(self) -> Trouble | None:
         """Said before anybody is refused; not as "not_recording", by which who asked for a lesson knows that it failed."""
-        return Trouble("disk_full", f"no lesson can be begun: {self._lacking}", _REMOVE) if self._lacking else None
+        return Trouble("disk_full", f"no lesson can be begun: {self._lacking}", self._make_room()) if self._lacking else None
 
     def _shortage(self) -> str:
         return shortage(free_disk_mib(self._folder), self._config)

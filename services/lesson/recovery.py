@@ -12,11 +12,13 @@ A disk that is full or away may have room or be back at any time, and a box runs
 
 import contextlib
 import errno
+import math
 import os
 import shutil
 import threading
 import time
 from pathlib import Path
+from typing import NamedTuple
 
 import structlog
 
@@ -30,6 +32,7 @@ from services.lesson.lesson_file import ENDED_SUFFIX, LessonWriter, lesson_of, m
 from services.lesson.lesson_reader import NewerLessonError, read_header
 from services.lesson.readable_names import is_readable, readable
 from services.lesson.survey import StoppedError, survey
+from services.support.no_room import is_no_room
 from services.support.sync import sync_folder
 
 DAMAGED_SUFFIX = f"{PART_SUFFIX}.damaged"
@@ -43,6 +46,13 @@ _MENDS_ITSELF = "nothing of it is lost: it is finished by itself once its disk i
 log = structlog.get_logger()
 
 
+class _Failure(NamedTuple):
+    """Why a lesson could not be finished when it was tried last; `lacks_bytes` is the room that it needs, if that is why."""
+
+    why: str = ""
+    lacks_bytes: int = 0
+
+
 class Left:
     """Lessons that wait to be finished: those that are in a folder before a recorder begins there, and those that it hands over.
 
@@ -50,14 +60,14 @@ class Left:
     """
 
     def __init__(self, folder: Path) -> None:
-        self._why = {path: "" for path in sorted(folder.glob(f"*{PART_SUFFIX}")) if _is_lesson(path)}
-        """Why a lesson could not be finished when it was tried last; empty before."""
+        self._why = {path: _Failure() for path in sorted(folder.glob(f"*{PART_SUFFIX}")) if _is_lesson(path)}
+        """Empty before it was tried."""
         self._lock = threading.Lock()
 
-    def hand_over(self, path: Path, why: str) -> None:
+    def hand_over(self, writer: LessonWriter, error: OSError) -> None:
         """A lesson that was ended could not be finished, and its file is closed."""
         with self._lock:
-            self._why[path] = why
+            self._why[writer.path] = _failure(error, writer.to_finish)
 
     def waits(self, lesson: str) -> bool:
         """Whether the lesson of that name is not finished yet."""
@@ -68,12 +78,17 @@ class Left:
     def trouble(self) -> Trouble | None:
         """Which lessons could not be finished, and why not; None if there are none. It keeps nobody from recording."""
         with self._lock:
-            tried = [(path, why) for path, why in self._why.items() if why]
+            tried = [(path, failure) for path, failure in self._why.items() if failure.why]
         if not tried:
             return None
-        (path, why), *others = tried
+        (path, failure), *others = tried
         which = f"{lesson_of(path)} and {len(others)} more are" if others else f"{lesson_of(path)} is"
-        return Trouble("recording_stalled", f"lesson {which} not finished yet: {why}", _MENDS_ITSELF)
+        words = f"lesson {which} not finished yet: {failure.why}"
+        lacks_bytes = sum(each.lacks_bytes for _, each in tried)
+        if not lacks_bytes:
+            return Trouble("recording_stalled", words, _MENDS_ITSELF)
+        words += f"; {'they need' if others else 'it needs'} {math.ceil(lacks_bytes / 1e6)} MB of room"
+        return Trouble("recording_stalled", words, f"make so much room on the disk of {path.parent}; {_MENDS_ITSELF}")
 
     def cut_short(self, run_ns: int) -> LessonWriter | None:
         """Open the newest one that was begun in this run of the box and not ended: its recorder died while it was being recorded.
@@ -127,7 +142,7 @@ class Left:
         try:
             writer = _reopened(path, stop)
         except OSError as error:
-            self._failed(path, path, error)
+            self._failed(path, path, error, _size(path))  # Of a damaged one, a copy is to be kept.
             return None
         if writer is None:
             self._done(path)
@@ -139,7 +154,7 @@ class Left:
             finished = writer.finish()
         except OSError as error:
             writer.close()
-            self._failed(path, writer.path, error)
+            self._failed(path, writer.path, error, writer.to_finish)
             return False
         self._done(path)
         LessonIndex(finished.parent).note(writer, finished)
@@ -150,18 +165,36 @@ class Left:
         with self._lock:
             del self._why[path]
 
-    def _failed(self, path: Path, path_now: Path, error: OSError) -> None:
-        """It could not be finished, and may have another name since it was marked as ended; a new reason is said once."""
+    def _failed(self, path: Path, path_now: Path, error: OSError, to_write: int) -> None:
+        """It could not be finished, and may have another name since it was marked as ended; a new reason is said once.
+
+        Args:
+            path: under which it waits.
+            path_now: its path.
+            error: why not.
+            to_write: bytes that are to be written of it.
+        """
         if isinstance(error, FileNotFoundError) and _was_removed(path_now):
             log.info("an unfinished lesson was taken away", lesson=path.name)
             self._done(path)
             return
-        why = error.strerror or str(error)
+        failure = _failure(error, to_write)
         with self._lock:
             before = self._why.pop(path)
-            self._why[path_now] = why
-        if why != before:
+            self._why[path_now] = failure
+        if failure.why != before.why:
             log.warning("a lesson could not be finished; it is tried again", lesson=path_now.name, reason=str(error))
+
+
+def _failure(error: OSError, to_write: int) -> _Failure:
+    return _Failure(error.strerror or str(error), to_write if is_no_room(error) else 0)
+
+
+def _size(path: Path) -> int:
+    try:
+        return path.stat().st_size
+    except OSError:
+        return 0
 
 
 def _is_lesson(path: Path) -> bool:

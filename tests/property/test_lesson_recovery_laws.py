@@ -205,7 +205,7 @@ def test_a_lesson_of_before_that_cannot_be_finished_is_tried_again_told_of_once_
         for _ in range(3):
             left.complete(threading.Event())
             assert left.trouble is not None
-            assert left.trouble.words == "lesson a and 1 more are not finished yet: No space left on device"
+            assert left.trouble.words == "lesson a and 1 more are not finished yet: No space left on device; they need 1 MB of room"
     assert [line["log_level"] for line in logged] == ["warning"] * 2
     left.complete(threading.Event())
     assert left.trouble is None

@@ -5,6 +5,7 @@ import os
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -13,6 +14,7 @@ from services.lesson.layout import PART_SUFFIX, SUFFIX
 from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_reader import open_lesson
 from services.lesson.recorder import RETRY_NS
+from services.lesson.recovery import Left
 from tests.synthetic.broken_index import break_index
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
 from tests.synthetic.recording_room import Room
@@ -49,6 +51,51 @@ def test_a_disk_that_fills_up_ends_the_lesson_cleanly_and_says_so(room: Room) ->
     room.recorder.start("three")
     assert room.trouble == ""
     assert room.recorder.health().title == "three"
+
+
+def test_a_refusal_for_want_of_room_is_not_said_any_more_once_there_is_room(room: Room) -> None:
+    room.free_mb = 300.0
+    room.recorder.start("one")
+    assert room.asks() is None
+    assert "no lesson was begun: 300 MB are left" in room.trouble, "who asked for it is to hear it"
+    assert room.trouble.endswith(f"or other files on the disk of {room.folder}, until 700 MB are free")
+    room.free_mb = 501.0
+    assert room.asks() is None
+    assert room.trouble == ""
+
+
+@pytest.mark.parametrize(("code", "helps"), [(errno.ENOSPC, "until 700 MB are free"), (errno.EIO, "put the disk back, mend or")])
+def test_what_is_to_be_done_about_a_lesson_that_had_to_end_is_against_its_cause(
+    room: Room, monkeypatch: pytest.MonkeyPatch, code: int, helps: str
+) -> None:
+    def fail(*_: object) -> None:
+        raise OSError(code, os.strerror(code))
+
+    room.recorder.start("one")
+    room.record(parts=1)
+    room.now_ns += SECOND_NS
+    with monkeypatch.context() as broken:
+        broken.setattr("services.lesson.lesson_file.os.fsync", fail)
+        room.recorder.take(part(BEGIN_NS + 1, 1))
+    trouble = room.recorder.trouble
+    assert trouble is not None
+    assert ("MB are free" in trouble.remedy, helps in trouble.remedy) == (code == errno.ENOSPC, True)
+
+
+def test_the_room_that_the_copy_of_a_damaged_lesson_takes_is_told(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
+    room.recorder.start("one")
+    room.record(parts=4)
+    room.recorder.stop()
+    (name,) = room.files(SUFFIX)
+    damaged = (room.folder / name).rename(room.folder / f"damaged{PART_SUFFIX}")
+    content = bytearray(damaged.read_bytes())
+    content[len(content) // 2] ^= 1
+    damaged.write_bytes(content + bytes(3_500_000))
+    left = Left(room.folder)
+    monkeypatch.setattr("services.lesson.recovery.shutil.disk_usage", lambda _: SimpleNamespace(free=1_000_000))
+    left.complete(threading.Event())
+    assert left.trouble is not None
+    assert left.trouble.words.endswith("No space left on device; it needs 4 MB of room")
 
 
 def test_a_disk_on_which_no_lesson_can_be_begun_is_told_before_anybody_wishes_one_and_refuses_nobody_who_ends_one(
@@ -246,7 +293,9 @@ def test_a_lesson_that_a_full_disk_left_unfinished_is_told_of_also_in_the_next_o
     room.recorder.start("two")
     room.record(parts=1)
     assert room.trouble == ""
-    assert room.waiting == f"lesson {name} is not finished yet: No space left on device"
+    assert room.waiting == f"lesson {name} is not finished yet: No space left on device; it needs 1 MB of room"
+    assert room.left.trouble is not None
+    assert room.left.trouble.remedy.startswith(f"make so much room on the disk of {room.folder}; nothing of it is lost")
     room.left.complete(threading.Event())
     assert room.waiting == ""
     assert room.recorder.health().title == "two"
