@@ -141,7 +141,30 @@ class LessonWriter:
         Raises:
             OSError: there is one of that name, or it cannot be written.
         """
-        path = folder / f"{name}{PART_SUFFIX}"
+        return cls._begun(folder / f"{name}{PART_SUFFIX}", header)
+
+    @classmethod
+    def create_over(cls, path: Path, header: LessonHeader) -> "LessonWriter":
+        """The same in the place of an unfinished file of which no more than its header is worth anything.
+
+        Raises:
+            OSError: it cannot be written; the file is as it was.
+        """
+        new = path.with_name(f".{path.name}.new")  # No name of a lesson: a crash may leave it.
+        new.unlink(missing_ok=True)
+        writer = cls._begun(new, header)
+        try:
+            writer.path = new.replace(path)
+        except BaseException:
+            writer.close()
+            new.unlink()
+            raise
+        with suppress(OSError):  # If a power cut takes the new file away, the old one is there again.
+            sync_folder(path.parent)
+        return writer
+
+    @classmethod
+    def _begun(cls, path: Path, header: LessonHeader) -> "LessonWriter":
         file = path.open("xb", buffering=0)
         contents = Contents()
         metadata = Metadata(lesson_header.NAME, header.to_metadata())
@@ -151,7 +174,7 @@ class LessonWriter:
         writer = cls(path, file, header, contents)
         try:
             writer._write(before + body + encode(*SCHEMAS, *CHANNELS))
-            sync_folder(folder)
+            sync_folder(path.parent)
         except BaseException:
             file.close()
             path.unlink()

@@ -258,9 +258,9 @@ def reopen(path: Path, stop: threading.Event | None = None) -> LessonWriter:
             kept = _keep(path)
             log.warning("lesson damaged", lesson=path.name, kept=kept.name, reason=damage)
         if not contents.chunks:
+            writer = LessonWriter.create_over(path, header)
             file.close()
-            path.unlink()
-            return LessonWriter.create(path.parent, path.name.removesuffix(PART_SUFFIX), header)
+            return writer
         file.seek(contents.end)
         file.truncate()
     except BaseException:

@@ -231,6 +231,30 @@ def test_a_lesson_whose_begun_summary_cannot_be_cut_off_is_tried_again_and_not_t
         assert as_logged(list(lesson.parts())) == list(PARTS)
 
 
+@pytest.mark.parametrize("fails", ["lesson_file.os.fsync", "lesson_file.Path.replace"], ids=["its first bytes", "its name"])
+def test_the_title_of_a_lesson_without_a_part_outlives_a_disk_on_which_it_cannot_be_begun_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: str
+) -> None:
+    writer = LessonWriter.create(tmp_path, "a", header("Cartwheel, class 7b"))
+    writer.finish()
+    data = (tmp_path / f"a{SUFFIX}").read_bytes()
+    (tmp_path / f"a{SUFFIX}").unlink()
+    (tmp_path / f"a.ended{PART_SUFFIX}").write_bytes(data[:-20])
+    left = Left(tmp_path)
+    with monkeypatch.context() as full:
+        full.setattr(f"services.lesson.{fails}", no_space)
+        for _ in range(2):
+            left.complete(threading.Event())
+            assert left.trouble is not None
+    (there,) = tmp_path.iterdir()
+    assert there.read_bytes() == data[:-20]
+    left.complete(threading.Event())
+    assert left.trouble is None
+    with open_lesson(tmp_path / f"a{SUFFIX}") as lesson:
+        assert lesson.header.title == "Cartwheel, class 7b"
+    assert [path.name for path in tmp_path.iterdir() if path.name.startswith(".")] == []
+
+
 def test_a_lesson_that_waits_is_tried_again_until_the_box_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     data, _ = written()
     (tmp_path / f"a{PART_SUFFIX}").write_bytes(data[:-20])
