@@ -22,6 +22,7 @@ from edge.perception.tracking import (
 from models.arrays import Float, Float32, UInt8
 from models.messages.control import ViewControl
 from models.messages.observation import Observation, Person
+from models.messages.precision import keypoints, magnitudes
 
 DETECTION_SIDE_PX = 416
 """The detector sees the picture reduced as far as its longer side stays above this."""
@@ -218,7 +219,7 @@ def _pose(pictures: _Pictures, look: Look, network: PoseEstimator, stages: Stage
     return Person(
         track=look.number,
         crop=look.crop,
-        keypoints_px=points_px.astype(np.float32),
-        sigma_px=(estimate.sigma * np.float32(look.crop.side_px)).astype(np.float32),
-        score=estimate.score.astype(np.float32),
+        keypoints_px=keypoints(points_px),
+        sigma_px=magnitudes(estimate.sigma * np.float32(look.crop.side_px)),
+        score=magnitudes(estimate.score),
     )

@@ -14,6 +14,7 @@ from models.camera.rig import Rig
 from models.messages.control import CropPrediction
 from models.messages.motion import CameraUse, JointState, Motion
 from models.messages.observation import Observation
+from models.messages.precision import covariances
 from models.skeleton import coco
 from services.fusion.config import FusionConfig
 from services.fusion.landmarks import corrected
@@ -215,7 +216,7 @@ def _motion(state: FusionState, kind: str, reconstruction: Reconstruction, t_s: 
         t_newest_ns=round(max(newest_s) * 1e9),
         t_published_ns=state.tick_ns,
         joints_m=pose.joints_m.astype(np.float32),
-        covariance_m2=pose.covariance_m2.astype(np.float32),
+        covariance_m2=covariances(pose.covariance_m2),
         states=pose.states,
         views=pose.views,
         cameras=cameras,

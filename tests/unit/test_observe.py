@@ -12,6 +12,7 @@ from edge.observe import EdgeConfig, EdgeState, Stages, observe
 from edge.turns import default_control
 from models.messages.control import CropPrediction, ViewControl
 from models.messages.observation import Crop, Observation
+from models.messages.precision import RELATIVE_ERROR
 from tests.fake_networks import FIGURE, FakeDetector, FakePose, fake_networks
 from tests.small_video import plain_picture, spot_picture, video_of
 
@@ -52,8 +53,8 @@ def test_keypoints_and_their_sigma_are_scaled_to_the_picture() -> None:
     (person,) = run.see(spot_at(150, 110)).persons
     side = person.crop.side_px
     assert person.keypoints_px.mean(axis=0) == pytest.approx((150 + FIGURE[:, 0].mean() * side, 110), abs=0.5)
-    assert person.sigma_px == pytest.approx(np.full(17, 0.01 * side), rel=1e-5)
-    assert person.score == pytest.approx(np.full(17, 0.8))
+    assert person.sigma_px == pytest.approx(np.full(17, 0.01 * side), rel=RELATIVE_ERROR)
+    assert person.score == pytest.approx(np.full(17, 0.8), rel=RELATIVE_ERROR)
 
 
 def test_the_step_follows_without_detecting_again() -> None:
