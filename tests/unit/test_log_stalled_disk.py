@@ -26,6 +26,7 @@ class StalledDisk:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self._others = set(threading.enumerate())
         path = log_path(folder, 1)
         os.mkfifo(path)
         self._reader = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
@@ -52,7 +53,7 @@ class StalledDisk:
     def close(self) -> None:
         def is_left() -> bool:
             self.goes_on()
-            return not any(thread.name == "log" for thread in threading.enumerate())
+            return not any(thread.name == "log" for thread in set(threading.enumerate()) - self._others)
 
         until(is_left, "whoever still writes to be done")
         os.close(self._reader)
