@@ -174,5 +174,5 @@ def test_a_simulated_camera_has_its_rate_from_its_lesson() -> None:
     head = 'version = 2\nname = "s"\ncalibration = "rig.toml"\n'
     cameras = "".join(f'[[cameras]]\nname = "{name}"\nkind = "simulated"\npath = "l"\n' for name in CAMERAS)
     assert {camera.kind for camera in decode_site((head + cameras).encode(), "s").cameras} == {"simulated"}
-    with pytest.raises(UserError, match=r"leave out `rate_hz`.*cameras\[2\]"):
+    with pytest.raises(UserError, match=r"no\. 3 .*leave out `rate_hz`"):
         decode_site((head + cameras + "rate_hz = 15.0\n").encode(), "s")
