@@ -40,9 +40,10 @@ def record(
     from services.logs import of_command  # noqa: PLC0415
     from services.site_file.reading import read_site  # noqa: PLC0415
 
-    if (stop and (detach or title or length)) or (detach and length):
-        given = "--stop" if stop else "--detach"
-        raise UserError(f"{given} goes with no other option of 'kinebox record' but --site and --data; leave the others out")
+    if stop and (detach or title or length):
+        raise UserError("--stop goes with no other option of 'kinebox record' but --site and --data; leave the others out")
+    if detach and length:
+        raise UserError("--detach does not go with --for: nobody stays to end the lesson; end it with 'kinebox record --stop'")
     seconds = None if length is None else parse_duration(length, "--for")
     of_command.configure()
     box, _ = read_site(site)

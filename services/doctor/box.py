@@ -148,7 +148,7 @@ def _restarts(box: BoxFacts) -> Iterator[Finding]:
         elif each.count >= OFTEN or ago_s * 1e9 < RECENT_NS:
             times = "once" if each.count == 1 else f"{each.count} times"
             words = f"{each.process} was started again {times}; {_ago(ago_s)} ago it {each.reason}"
-            remedy = f"read what it said before (`{_log_of(each.process, box)}`); once is no harm"
+            remedy = f"once is no harm; if it happens again, read what it said before (`{_log_of(each.process, box)}`)"
             yield Finding("warning", each.process, words, "the supervisor's count", remedy)
 
 

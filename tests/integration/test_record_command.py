@@ -218,7 +218,7 @@ def test_a_disk_too_full_is_told_with_the_key_that_says_how_full(tmp_path: Path)
         (("--title", "x" * 81), "--title: a title has at most 80 characters"),
         (("--title", os.fsdecode(b"\xff")), "--title: it holds bytes that are not UTF-8"),
         (("--stop", "--detach"), "--stop goes with no other option"),
-        (("--detach", "--for", "3m"), "--detach goes with no other option"),
+        (("--detach", "--for", "3m"), "--detach does not go with --for"),
     ],
 )
 def test_what_makes_no_sense_is_refused_before_anybody_is_asked(tmp_path: Path, words: tuple[str, ...], line: str) -> None:

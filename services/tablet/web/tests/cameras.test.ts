@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { CameraStatus } from '../src/protocol/messages';
-import { boxIsBusy, gettingReady, givenUp } from '../src/state/cameras';
+import { boxIsBusy, gettingReady, givenUp, slowCameras } from '../src/state/cameras';
 
 const camera = (changes: Partial<CameraStatus>): CameraStatus => ({
   name: 'cam0',
@@ -41,6 +41,11 @@ describe('a busy box', () => {
     expect(boxIsBusy([camera({}), camera({ source_hz: 5 })])).toBe(false);
     expect(boxIsBusy([camera({}), camera({ reason: 'degraded' })])).toBe(false);
   });
+});
+
+it('cameras that the box does not look at often enough are told from those that are slow by themselves', () => {
+  const cameras = [camera({}), camera({ source_hz: 5 }), camera({ state: 'ok' }), camera({ reason: 'behind' })];
+  expect(slowCameras(cameras)).toEqual({ byThemselves: [2], byTheBox: [1, 4] });
 });
 
 it('cameras that are given up are told from those that come back', () => {

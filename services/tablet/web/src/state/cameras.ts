@@ -18,6 +18,15 @@ export function boxIsBusy(cameras: readonly CameraStatus[]): boolean {
   return cameras.length > 0 && cameras.every(slowedByTheBox);
 }
 
+/** Numbers of the cameras, from 1, that are slow, by who is to blame. */
+export function slowCameras(cameras: readonly CameraStatus[]): { byThemselves: number[]; byTheBox: number[] } {
+  const numbers = (blamed: boolean): number[] =>
+    cameras.flatMap((camera, index) =>
+      camera.state === 'slow' && slowedByTheBox(camera) === blamed ? [index + 1] : [],
+    );
+  return { byThemselves: numbers(false), byTheBox: numbers(true) };
+}
+
 /** Numbers of the cameras, from 1, that the box starts no more. */
 export function givenUp(cameras: readonly CameraStatus[]): number[] {
   return cameras.flatMap((camera, index) => (camera.reason === 'given_up' ? [index + 1] : []));

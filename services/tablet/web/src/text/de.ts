@@ -165,6 +165,7 @@ export const de: Words = {
     failed: 'Die Wiederholung kam nicht an',
     again: 'Noch einmal',
     back: 'Zurück zu Live',
+    backThen: 'Zurück zur Stunde',
     play: 'Abspielen',
     pause: 'Anhalten',
     position: 'Stelle im Versuch',
@@ -219,6 +220,8 @@ export const de: Words = {
         ? `Kamera ${numbers[0]} kommt nicht von selbst zurück: prüfen, dann die Box neu starten.`
         : `Kameras ${listed(numbers)} kommen nicht von selbst zurück: prüfen, dann die Box neu starten.`,
     busy: 'Die Box ist ausgelastet – schnelle Bewegungen können fehlen',
+    heldUp: (numbers) =>
+      `Die Box kommt mit ${numbers.length === 1 ? 'Kamera' : 'den Kameras'} ${listed(numbers)} nicht nach`,
     slow: (slow, all) => {
       if (all) return 'Alle Kameras sind langsam – schnelle Bewegungen können fehlen';
       return slow.length === 1 ? `Kamera ${slow[0]} ist langsam` : `Kameras ${listed(slow)} sind langsam`;
@@ -227,6 +230,8 @@ export const de: Words = {
       lost: (lost) =>
         lost.length === 1 ? `Kamera ${lost[0]} war hier verloren` : `Kameras ${listed(lost)} waren hier verloren`,
       busy: 'Die Box war hier ausgelastet – schnelle Bewegungen können fehlen',
+      heldUp: (numbers) =>
+        `Die Box kam hier mit ${numbers.length === 1 ? 'Kamera' : 'den Kameras'} ${listed(numbers)} nicht nach`,
       slow: (slow, all) => {
         if (all) return 'Alle Kameras waren hier langsam – schnelle Bewegungen können fehlen';
         return slow.length === 1 ? `Kamera ${slow[0]} war hier langsam` : `Kameras ${listed(slow)} waren hier langsam`;

@@ -215,6 +215,7 @@ export const en = {
     failed: 'The replay did not arrive',
     again: 'Try again',
     back: 'Back to live',
+    backThen: 'Back to the lesson',
     play: 'Play',
     pause: 'Pause',
     position: 'Moment of the attempt',
@@ -258,6 +259,8 @@ export const en = {
         ? `Camera ${numbers[0]} does not come back by itself: check it, then start the box anew.`
         : `Cameras ${listed(numbers)} do not come back by themselves: check them, then start the box anew.`,
     busy: 'The box is busy – fast movement may be missed',
+    heldUp: (numbers: number[]): string =>
+      `The box cannot keep up with camera${numbers.length === 1 ? '' : 's'} ${listed(numbers)}`,
     slow: (slow: number[], all: boolean): string => {
       if (all) return 'All cameras are slow – fast movement may be missed';
       return slow.length === 1 ? `Camera ${slow[0]} is slow` : `Cameras ${listed(slow)} are slow`;
@@ -267,6 +270,8 @@ export const en = {
       lost: (lost: number[]): string =>
         lost.length === 1 ? `Camera ${lost[0]} was lost here` : `Cameras ${listed(lost)} were lost here`,
       busy: 'The box was busy here – fast movement may be missing',
+      heldUp: (numbers: number[]): string =>
+        `The box could not keep up with camera${numbers.length === 1 ? '' : 's'} ${listed(numbers)} here`,
       slow: (slow: number[], all: boolean): string => {
         if (all) return 'All cameras were slow here – fast movement may be missing';
         return slow.length === 1 ? `Camera ${slow[0]} was slow here` : `Cameras ${listed(slow)} were slow here`;

@@ -168,6 +168,7 @@ export const es: Words = {
     failed: 'La repetición no ha llegado',
     again: 'Otra vez',
     back: 'Volver al directo',
+    backThen: 'Volver a la clase',
     play: 'Reproducir',
     pause: 'Pausa',
     position: 'Momento del intento',
@@ -222,6 +223,8 @@ export const es: Words = {
         ? `La cámara ${numbers[0]} no vuelve sola: revísela y reinicie la caja.`
         : `Las cámaras ${listed(numbers)} no vuelven solas: revíselas y reinicie la caja.`,
     busy: 'La caja está ocupada – puede faltar movimiento rápido',
+    heldUp: (numbers) =>
+      `La caja no da abasto con ${numbers.length === 1 ? 'la cámara' : 'las cámaras'} ${listed(numbers)}`,
     slow: (slow, all) => {
       if (all) return 'Todas las cámaras van lentas – puede faltar movimiento rápido';
       return slow.length === 1 ? `La cámara ${slow[0]} va lenta` : `Las cámaras ${listed(slow)} van lentas`;
@@ -230,6 +233,8 @@ export const es: Words = {
       lost: (lost) =>
         lost.length === 1 ? `La cámara ${lost[0]} se perdió aquí` : `Las cámaras ${listed(lost)} se perdieron aquí`,
       busy: 'La caja estaba ocupada aquí – puede faltar movimiento rápido',
+      heldUp: (numbers) =>
+        `La caja no daba abasto aquí con ${numbers.length === 1 ? 'la cámara' : 'las cámaras'} ${listed(numbers)}`,
       slow: (slow, all) => {
         if (all) return 'Todas las cámaras iban lentas aquí – puede faltar movimiento rápido';
         return slow.length === 1
