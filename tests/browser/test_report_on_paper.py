@@ -74,6 +74,12 @@ def test_each_pupils_sheet_begins_on_paper_of_its_own(paper: Page, tmp_path: Pat
     assert len(re.findall(rb"/Type\s*/Page\b", pdf)) == 4
 
 
+def test_a_printed_attempt_is_small_however_much_of_it_is_dotted_and_striped(paper: Page, tmp_path: Path) -> None:
+    paper.goto(written(tmp_path).as_uri())
+    pdf = paper.pdf(prefer_css_page_size=True, print_background=True)
+    assert len(pdf) < 5 * 100_000
+
+
 def test_it_asks_nobody_for_anything_and_breaks_no_policy(browser: Browser, tmp_path: Path) -> None:
     page = browser.new_page()
     asked: list[str] = []

@@ -11,6 +11,7 @@ from models.messages.feedback import Feedback
 from models.teaching.schema import Language
 from services.evaluation.report import svg
 from services.evaluation.report.curve import Curve
+from services.evaluation.report.hatching import hatched
 from services.evaluation.report.numbers import number
 from services.evaluation.report.svg import Point
 from services.evaluation.report.words import ANGLES, Words
@@ -103,6 +104,7 @@ def _gaps(curve: Curve, plane: _Plane) -> Iterator[str]:
         last_s = min(float(curve.t_s[run.stop - 1]) + half_s, plane.t_s[1])
         (left, top), (right, bottom) = plane.at(first_s, plane.deg[1]), plane.at(last_s, plane.deg[0])
         yield svg.element("rect", x=left, y=top, width=right - left, height=bottom - top, class_="gap")
+        yield hatched([(left, top), (right, top), (right, bottom), (left, bottom)], "lines")
 
 
 def _runs(plane: _Plane, t_s: Float, deg: Float) -> Iterator[list[Point]]:

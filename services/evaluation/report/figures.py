@@ -19,6 +19,7 @@ from models.teaching.measure import PHASES
 from services.evaluation.normalise import size_m
 from services.evaluation.report import svg
 from services.evaluation.report.body import HEAD_RADIUS, TRUNK_WIDTH, Capsule, Head, Limb, Trunk, parts_of
+from services.evaluation.report.hatching import around, hatched
 from services.evaluation.report.numbers import estimate
 from services.evaluation.report.svg import Point
 from services.evaluation.report.view import View, view_of
@@ -44,37 +45,8 @@ PAINT: Final = {Colour.GREEN: "good", Colour.YELLOW: "near", Colour.RED: "off", 
 _ON_TOP: Final = (Colour.GREEN, Colour.GREY, Colour.YELLOW, Colour.RED)
 """Of two, one behind the other, the later one is seen: paper cannot be turned, and hides nothing that was wrong or not sure."""
 
-PATTERNS: Final = svg.element(
-    "defs",
-    svg.element(
-        "pattern",
-        '<rect width="1.1" height="1.1" fill="#ffd84d"/><circle cx=".3" cy=".3" r=".22" fill="#4a3500"/>'
-        '<circle cx=".85" cy=".85" r=".22" fill="#4a3500"/>',
-        id="dots",
-        patternUnits="userSpaceOnUse",
-        width="1.1",
-        height="1.1",
-    )
-    + svg.element(
-        "pattern",
-        '<rect width="1.1" height="1.1" fill="#d4351c"/><rect width=".5" height="1.1" fill="#3d0a03"/>',
-        id="stripes",
-        patternUnits="userSpaceOnUse",
-        width="1.1",
-        height="1.1",
-        patternTransform="rotate(45)",
-    )
-    + svg.element(
-        "pattern",
-        '<rect width="1.6" height="1.6" fill="#fff"/><rect width=".25" height="1.6" fill="#b5b5b5"/>',
-        id="hatch",
-        patternUnits="userSpaceOnUse",
-        width="1.6",
-        height="1.6",
-        patternTransform="rotate(45)",
-    ),
-)
-"""Once a page."""
+HATCHED: Final = {"near": "dots", "off": "stripes"}
+"""What lies over the paint of these."""
 
 
 def figures(feedback: Feedback, words: Words, label: str) -> str:
@@ -187,19 +159,27 @@ def _sorted(joints_m: Float, colours: "np.ndarray[tuple[int], np.dtype[np.uint8]
 def _painted(part: Limb | Trunk | Head, pen: _Pen) -> Iterator[str]:
     if isinstance(part, Limb):
         for half in part.halves:
-            yield svg.path(_outline(half, pen), f"{PAINT[half.colour]} edge")
+            yield from _shape(_outline(half, pen), PAINT[half.colour])
     elif isinstance(part, Trunk):
         for corners, middle, colour in _trunk_pieces(part):
             hull = _rounded([pen.at(one) for one in corners], pen.wide(TRUNK_WIDTH) / 2, [pen.at(one) for one in middle])
-            yield svg.path(hull, f"{PAINT[colour]} edge", closed=True)
+            yield from _shape(hull, PAINT[colour], closed=True)
     else:
         yield from _head(part, pen, PAINT[part.colour])
+
+
+def _shape(corners: list[Point], paint: str, *, closed: bool = False) -> Iterator[str]:
+    yield svg.path(corners, f"{paint} edge", closed=closed)
+    if paint in HATCHED:
+        yield hatched(corners, HATCHED[paint])
 
 
 def _head(head: Head, pen: _Pen, paint: str) -> Iterator[str]:
     x, y = pen.at(head.middle_m)
     radius = pen.wide(HEAD_RADIUS)
     yield svg.element("circle", cx=x, cy=y, r=radius, class_=f"{paint} edge")
+    if paint in HATCHED:
+        yield hatched(around((x, y), radius), HATCHED[paint])
     if np.isfinite(head.nose_m).all():
         ahead = np.array(pen.at(head.nose_m)) - (x, y)
         length = float(np.hypot(*ahead))

@@ -8,7 +8,8 @@ from models.messages.feedback import Colour, Silence, Verdict
 from services.evaluation.report import curve_chart, scores
 from services.evaluation.report.curve import curves_of
 from services.evaluation.report.document import ActionSummary, Attempt, Measure, PupilSummary, Report
-from services.evaluation.report.figures import PAINT, PATTERNS, figures
+from services.evaluation.report.figures import HATCHED, PAINT, figures
+from services.evaluation.report.hatching import hatched
 from services.evaluation.report.numbers import between, clock, escaped, estimate
 from services.evaluation.report.sheet import Sheet, Tried
 from services.evaluation.report.style import STYLE
@@ -35,7 +36,7 @@ def encode(sheet: Sheet) -> bytes:
         f"<title>{escaped(f'{words.report}: {title}')}</title>",
         f"<style>{STYLE}</style>",
         "</head>",
-        f'<body><svg width="0" height="0" style="position:absolute" aria-hidden="true">{PATTERNS}</svg><main>{body}</main></body>',
+        f"<body><main>{body}</main></body>",
         "</html>",
     )
     return ("\n".join(lines) + "\n").encode()
@@ -175,13 +176,14 @@ def _curves(sheet: Sheet, tried: Tried, words: Words) -> Iterator[str]:
 
 def _legend(words: Words) -> str:
     order = (Colour.GREEN, Colour.YELLOW, Colour.RED, Colour.GREY)
-    entries = [(f"{PAINT[colour]} edge", words.colours[colour]) for colour in order] + [("shadow", words.model)]
+    entries = [(PAINT[colour], words.colours[colour]) for colour in order] + [("shadow", words.model)]
     return '<p class="legend">' + "".join(f"<span>{_swatch(class_)}{escaped(name)}</span>" for class_, name in entries) + "</p>"
 
 
-def _swatch(class_: str) -> str:
-    box = element("rect", x=0.2, y=0.2, width=4.6, height=2.2, rx=1.1, class_=class_)
-    return f'<svg viewBox="0 0 5 2.6" aria-hidden="true">{box}</svg>'
+def _swatch(paint: str) -> str:
+    box = element("rect", x=0.2, y=0.2, width=4.6, height=2.2, rx=1.1, class_=paint if paint == "shadow" else f"{paint} edge")
+    marks = hatched([(0.5, 0.2), (4.5, 0.2), (4.5, 2.4), (0.5, 2.4)], HATCHED[paint]) if paint in HATCHED else ""
+    return f'<svg viewBox="0 0 5 2.6" aria-hidden="true">{box}{marks}</svg>'
 
 
 def _estimate(value: float | None, sigma: float | None, unit: str, words: Words) -> str:

@@ -56,8 +56,10 @@ figure.curve .name { font-size: 8pt; font-weight: 600; color: #111 }
 .shadow { fill: #b9c4d0 }
 .edge { stroke: #111; stroke-width: .25; stroke-linejoin: round; stroke-linecap: round }
 .good { fill: #e3f4e2 }
-.near { fill: url(#dots) }
-.off { fill: url(#stripes) }
+.near { fill: #ffd84d }
+.off { fill: #d4351c }
+.dots { stroke: #4a3500; stroke-width: .44; stroke-linecap: round; stroke-dasharray: 0 .78 }
+.stripes { stroke: #3d0a03; stroke-width: .5 }
 .unsure { fill: #fff; stroke: #777; stroke-dasharray: .7 .5 }
 .nose { fill: #111 }
 .lost { font-size: 9px; fill: #777; font-weight: 700 }
@@ -73,7 +75,8 @@ figure.curve .name { font-size: 8pt; font-weight: 600; color: #111 }
 .band { fill: #d9d9d9 }
 .model { fill: none; stroke: #777; stroke-width: .3; stroke-dasharray: 1.2 .7 }
 .pupil { fill: none; stroke: #111; stroke-width: .7; stroke-linejoin: round; stroke-linecap: round }
-.gap { fill: url(#hatch) }
+.gap { fill: #fff }
+.lines { stroke: #b5b5b5; stroke-width: .25 }
 .whisker { stroke: #111; stroke-width: .35 }
 .score { fill: #fff; stroke: #111; stroke-width: .35 }
 .letter { font-size: 2.4px; font-weight: 700 }

@@ -30,6 +30,12 @@ def path(points: Iterable[Point], class_: str, *, closed: bool = False) -> str:
     return element("polygon" if closed else "polyline", points=corners, class_=class_)
 
 
+def strokes(ends: Iterable[tuple[Iterable[float], Iterable[float]]], class_: str) -> str:
+    """Straight lines from one place to another each, as one path; empty if there are none."""
+    drawn = "".join(f"M{_place(begin)}L{_place(end)}" for begin, end in ends)
+    return element("path", d=drawn, class_=class_) if drawn else ""
+
+
 def text(place: Point, content: str, class_: str, anchor: str = "start") -> str:
     """A line of text, escaped."""
     return element("text", escaped(content), x=place[0], y=place[1], class_=class_, text_anchor=anchor)
@@ -38,6 +44,10 @@ def text(place: Point, content: str, class_: str, anchor: str = "start") -> str:
 def length(value: float) -> str:
     """To a hundredth of a millimetre; the same everywhere."""
     return f"{round(value, 2) + 0.0:.2f}".rstrip("0").rstrip(".")
+
+
+def _place(place: Iterable[float]) -> str:
+    return ",".join(length(value) for value in place)
 
 
 def _value(value: str | float) -> str:
