@@ -12,7 +12,8 @@ KEYPOINT_STEP_PX = 2.0**-6
 """The best of the networks errs by more than a pixel."""
 RELATIVE_ERROR = 2.0**-8
 """Of a magnitude, at most: it keeps eight significant bits, as bfloat16 does."""
-_DROPPED_BITS = 16
+_KEPT = np.uint32(0xFFFF0000)
+_HALF_A_STEP = np.uint32(0x8000)
 
 
 def keypoints(values_px: Float) -> Float32:
@@ -23,8 +24,8 @@ def keypoints(values_px: Float) -> Float32:
 def magnitudes(values: Float | Float32) -> Float32:
     """Values of which only the size matters, each with at most `RELATIVE_ERROR`; zero stays zero."""
     bits = np.array(values, np.float32).view(np.uint32)
-    bits += np.uint32(1 << (_DROPPED_BITS - 1))
-    bits &= np.uint32(~((1 << _DROPPED_BITS) - 1) & 0xFFFFFFFF)
+    bits += _HALF_A_STEP
+    bits &= _KEPT
     return bits.view(np.float32)
 
 

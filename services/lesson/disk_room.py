@@ -6,7 +6,7 @@ from models.config.site import LessonsConfig
 from services.support.amount import megabytes
 
 LESSON_MB = 200
-"""A lesson of 45 minutes takes up to 175 MB."""
+"""A lesson of 45 minutes takes up to 150 MB (`make bench-lessons`), and others write beside it."""
 
 
 def shortage(free_mib: float, config: LessonsConfig) -> str:

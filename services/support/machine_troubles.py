@@ -5,7 +5,7 @@ from models.messages.trouble import MachineCode, Trouble
 from services.support.amount import megabytes, size_of
 
 DISK_FULL_MB = 200.0
-"""A lesson of 45 minutes takes up to 175 MB; below this the next one does not fit."""
+"""A lesson of 45 minutes takes up to 150 MB (`make bench-lessons`), and others write beside it."""
 DISK_LOW_MB = 2000.0
 """Room for a dozen lessons."""
 MEMORY_LOW_MIB = 250.0
