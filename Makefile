@@ -33,7 +33,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export NUMBA_CACHE_DIR := $(abspath $(DATA))/kernels
 
-.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions standards check-standards lock clean distclean test-faults test-mutations test-motions test-rendering bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-simulate bench-networks bench-keyframes bench-measures twin
+.PHONY: help run test check setup networks film footage simulated web bytecode kernels body check-body motions check-motions standards check-standards lock clean distclean test-faults test-mutations test-motions test-rendering bench-faults bench-start bench-box bench-footage bench-peers bench-footage2 bench-shelf bench-lessons bench-reconstruct bench-simulate bench-networks bench-feedback bench-keyframes bench-measures twin
 
 help: ## Show this list
 	@grep -hE '^[a-z0-9-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
@@ -184,6 +184,9 @@ bench-simulate: $(VENV)/.ready kernels ## Time and memory that rendering a lesso
 
 bench-networks: $(VENV)/.ready networks kernels ## How well the pose networks see simulated pupils, and the landmark bias
 	$(PYTHON) -m tests.bench.networks --data $(DATA) $(ARGS)
+
+bench-feedback: setup ## How soon the running box says what it says of the built-in lesson, and whether it corrects anything (--seconds, --site in ARGS)
+	$(PYTHON) -m tests.bench.teaching.live --site deploy/sites/simulated/site.toml --data $(DATA) $(ARGS)
 
 bench-keyframes: $(VENV)/.ready networks kernels ## Attempts, keyframes and cues: rendered (the first time for hours), on true motion, on the twin; half an hour without one (ARGS=--on rendered|true|twin|idle)
 	$(PYTHON) -m tests.bench.teaching.keyframes --data $(DATA) $(ARGS)

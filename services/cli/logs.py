@@ -39,8 +39,7 @@ def show(data: Path, query: Query, most: int, *, json: bool, follow: bool, repla
         lines, reader = last_lines(folder, query, most, torn=not follow)
         _print(lines, json=json)
         if most and not lines and not follow:
-            there = f"; the processes with lines in it are {_processes(folder)}" if query.processes else ""
-            sys.stderr.write(f"no line of the log in {folder} matches{there}\n")
+            sys.stderr.write(f"{_none_matches(folder, query)}\n")
         while follow:
             time.sleep(_LOOK_AGAIN_S)
             _print(query.select(reader.poll()), json=json)
@@ -61,8 +60,9 @@ def pack(file: Path, data: Path, query: Query, site: Path | None, *, replay: boo
     site = site or _site_of_last_start(folder)
     toml = None if site is None else _site_without_secrets(site)
     with _readable_log(folder):
-        lines = wanted_lines(folder, query)
-        manifest = export(file, lines, toml, _told(query), dt.datetime.now(dt.UTC))
+        if query.processes and next(wanted_lines(folder, query), None) is None:
+            raise UserError(f"nothing is packed: {_none_matches(folder, query)}")
+        manifest = export(file, wanted_lines(folder, query), toml, _told(query), dt.datetime.now(dt.UTC))
     included = f"the site file {site}" if site is not None else "no site file (name it with --site)"
     return f"{file} holds {manifest['lines']['count']} lines and {included}; no pictures, keypoints or passwords\n"
 
@@ -116,6 +116,11 @@ def _require_log(folder: Path) -> None:
     if not found:
         writer = "kinebox replay" if folder.name == REPLAY else "kinebox run"
         raise UserError(f"there is no log in {folder}; '{writer}' writes it there, or name another folder with --data")
+
+
+def _none_matches(folder: Path, query: Query) -> str:
+    there = f"; the processes with lines in it are {_processes(folder)}" if query.processes else ""
+    return f"no line of the log in {folder} matches{there}"
 
 
 def _processes(folder: Path) -> str:

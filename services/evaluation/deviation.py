@@ -110,7 +110,8 @@ def tolerances_m(tolerance: Tolerance, stature_m: float) -> Float:
 def _covariance_m2(aligned: AlignedTrack, track: Track, model: Uncertainty) -> Float:
     """(T, 17, 3, 3) of the joints' places in the standard's frame."""
     turn = aligned.placing.matrix
-    scales, landmarks = np.square(model.noise_scale)[:, None, None], np.square(model.landmark_m)[:, None, None]
+    grown = model.grown(track.joints_m)
+    scales, landmarks = (np.square(grown * sizes)[..., None, None] for sizes in (model.noise_scale, model.landmark_m))
     noise = scales * track.covariance_m2
     joints = noise + landmarks * np.eye(3)
     # The middle of the hips is above the origin: its error moves all joints. Both hips are wrong alike: it is as large as theirs.

@@ -165,7 +165,8 @@ class EvaluationLoop:
         self._bus.publish(topics.feedback(), codec.encode(stamped))
         self._memory.note(stamped)
         after_s = (now_ns - feedback.keyframes_ns[-1]) * 1e-9
-        log.info("attempt", action=feedback.action, cue=feedback.cue, praise=feedback.praise, after_s=round(after_s, 2))
+        said = {"cue": feedback.cue or "none", "praise": feedback.praise or "none"}
+        log.info("attempt", action=feedback.action, **said, after_s=round(after_s, 2))
 
     def _second_passed(self) -> None:
         second, state = self._second, self._state

@@ -28,11 +28,14 @@ class SightingConfig:
         min_score: keypoints below are not used.
         full_score: below this score, sigma grows as full_score / score.
         sigma_floor_px: added in quadrature to every sigma; covers what the network's sigma does not know of.
+        doubled: by how much sigma grows of a point that lies on the other limb of its pair (`services.fusion.doubles`); 1 is not
+            at all.
     """
 
     min_score: float = 0.15
     full_score: float = 0.3
     sigma_floor_px: float = 0.5
+    doubled: float = 4.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,11 +196,11 @@ class FusionConfig:
 
 def _paper() -> FusionConfig:
     """Eq. 8 as printed: second difference, distal joints smoothed most; no limb-length residual on joints that are seen, nothing
-    caught again, and no word of what happened between the pictures."""
+    caught again, no doubt of limbs that are named twice, and no word of what happened between the pictures."""
     gamma = by_distance_from_trunk(0.020, 0.011, 0.006)
     never = float("inf")
     smoothing = SmoothingConfig(order=2, difference_m=gamma, limb_sigma=never, recapture_views=never, between_looks=0.0)
-    return replace(FusionConfig(preset="paper"), smoothing=smoothing)
+    return replace(FusionConfig(preset="paper"), sighting=SightingConfig(doubled=1.0), smoothing=smoothing)
 
 
 PRESETS: Final = {"default": FusionConfig(preset="default"), "paper": _paper()}

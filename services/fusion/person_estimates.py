@@ -10,6 +10,7 @@ from services.fusion.association import Familiar, agreement, pick_pupil
 from services.fusion.between_looks import gaps_s, unsure_m2
 from services.fusion.body_filter import BodyFilter, centre_in_picture
 from services.fusion.config import FusionConfig
+from services.fusion.doubles import single
 from services.fusion.history import FilterHistory, Seed
 from services.fusion.joint_filter import Expectation
 from services.fusion.limbs import ENDS, LimbLengths
@@ -93,6 +94,7 @@ class PersonEstimates:
         self.misses[camera] = 0
         self._identities[camera] = found.track
         repaired = sighting is not found
+        sighting = single(sighting, expected, config.sighting.doubled)
         if not self._tracks.add(camera, sighting):
             return
         innovation = self._filters.observe(sighting, predicted)

@@ -4,13 +4,15 @@ The smoother's data term is robust: a picture that shows a joint far from where 
 mistakes of the network out. But a foot that is swung faster than the filter foresaw is out of every picture's reach as well, and
 stays there for as long as the swing lasts, however well all cameras see it. So the instants that pictures have just reached are
 looked at without any memory: where triangulation finds a point to which clearly fewer views object than to the smoother's, the
-smoother goes on from there. What it makes of it is still its own matter.
+smoother goes on from there. What it makes of it is still its own matter. Points that may be the other foot's do not take part
+(`doubles.untwinned`): two cameras that take the standing foot for both would hold the swung one down.
 """
 
 import numpy as np
 
 from models.arrays import Float
 from services.fusion.config import FusionConfig
+from services.fusion.doubles import untwinned
 from services.fusion.smoothing import Smoother
 from services.fusion.timing import Tracks
 from services.fusion.triangulation import objections, triangulate
@@ -33,6 +35,8 @@ def recapture(
     """
     least = config.smoothing.recapture_views
     points, sigma, usable = tracks.at(index * config.frame_s, config.timing)
+    if config.sighting.doubled > 1.0:
+        usable = untwinned(views, points, usable, centre_m)
     against = objections(views, points, sigma, usable, config.triangulation, smoother.at(index))
     usable = usable & (against > least)
     if usable.any():

@@ -8,112 +8,30 @@ is the same as going on with one: it is cut after its last whole chunk, and from
 import errno
 import fcntl
 import os
-import struct
 import zlib
-from collections import deque
-from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
 
 import msgspec
-import zstandard
-from mcap.opcode import Opcode
 from mcap.records import (
-    Chunk,
-    ChunkIndex,
-    DataEnd,
-    Footer,
     Header,
-    McapRecord,
     Message,
     Metadata,
     MetadataIndex,
-    Statistics,
-    SummaryOffset,
 )
 
-from models.messages import codec
-from models.messages.attempts import REMEMBERED
-from models.messages.feedback import Feedback
 from models.messages.lesson import FusionLog
 from services.lesson import lesson_header
+from services.lesson.contents import Contents, chunk_of, summary_of
 from services.lesson.free_names import rename_free
 from services.lesson.layout import CHANNEL_OF, CHANNELS, MARK, PART_SUFFIX, PROFILE, SCHEMAS, SUFFIX, Mark
 from services.lesson.lesson_header import LessonHeader
-from services.lesson.mcap_records import MAGIC, encode, encode_messages
+from services.lesson.mcap_records import MAGIC, encode
 from services.support.sync import sync_folder
 
 ENDED_SUFFIX = f".ended{PART_SUFFIX}"
 """Of a file that only waits to be finished: nothing is recorded into it any more, whatever becomes of the recorder."""
-
-_COMPRESSION = "zstd"
-_LEVEL = 6
-"""Covariances are symmetric, which lower levels do not see: 12 % larger files. Higher ones gain nothing."""
-
-
-@dataclass
-class Contents:
-    """What a file holds up to its end, from which its summary is written.
-
-    Attributes:
-        end: size of the file in bytes.
-        checksum: CRC-32 of all bytes until there.
-        metadata: where the header lies.
-        chunks: where the chunks lie.
-        counts: messages by channel.
-        sequence: number of the next message.
-        log_time_ns: of the latest message; log times never go back.
-        gaps: parts before which something is missing.
-        segments: stretches that replay in one go.
-        segment_ns: the name of the last one; 0 before the first.
-        next_part: number of the part that it goes on with.
-        attempts: names of the last attempts in it, in their order; 0 for one that cannot be read.
-    """
-
-    end: int = 0
-    checksum: int = 0
-    metadata: MetadataIndex | None = None
-    chunks: list[ChunkIndex] = field(default_factory=list)
-    counts: dict[int, int] = field(default_factory=dict)
-    sequence: int = 0
-    log_time_ns: int = 0
-    gaps: int = 0
-    segments: int = 0
-    segment_ns: int = 0
-    next_part: int = 0
-    attempts: deque[int] = field(default_factory=lambda: deque(maxlen=REMEMBERED))
-
-    @property
-    def seconds(self) -> float:
-        """From the first entry to the last, with the gaps."""
-        return (self.chunks[-1].message_end_time - self.chunks[0].message_start_time) * 1e-9 if self.chunks else 0.0
-
-    def take_chunk(self, start: int, length: int, chunk: Chunk, messages: Sequence[Message], mark: Mark) -> None:
-        """Note a chunk that lies at byte `start`."""
-        for message in messages:
-            self.counts[message.channel_id] = self.counts.get(message.channel_id, 0) + 1
-            if message.channel_id == CHANNEL_OF["feedback"]:
-                self.attempts.append(_name_of(message.data))
-        self.chunks.append(
-            ChunkIndex(
-                chunk_length=length,
-                chunk_start_offset=start,
-                compression=chunk.compression,
-                compressed_size=len(chunk.data),
-                message_end_time=chunk.message_end_time,
-                message_index_length=0,
-                message_index_offsets={},
-                message_start_time=chunk.message_start_time,
-                uncompressed_size=chunk.uncompressed_size,
-            )
-        )
-        self.sequence += len(messages)
-        self.log_time_ns = messages[-1].log_time
-        self.gaps += bool(mark.gap)
-        self.segments += mark.segment_ns != self.segment_ns
-        self.segment_ns, self.next_part = mark.segment_ns, mark.sequence + 1
 
 
 class LessonWriter:
@@ -219,7 +137,7 @@ class LessonWriter:
     @property
     def to_finish(self) -> int:
         """Bytes that `finish` adds to it."""
-        return len(_summary(self._contents))
+        return len(summary_of(self._contents))
 
     @property
     def ended(self) -> bool:
@@ -253,7 +171,7 @@ class LessonWriter:
         for number, entry in enumerate(part.entries, start=contents.sequence + 1):
             log_time_ns = max(log_time_ns, entry.t_ns)
             messages.append(Message(CHANNEL_OF[entry.kind], log_time_ns, entry.payload, entry.t_ns, number))
-        chunk = _chunk(messages)
+        chunk = chunk_of(messages)
         body = encode(chunk)
         start = contents.end
         self._write(body)
@@ -270,7 +188,7 @@ class LessonWriter:
             raise FileNotFoundError(errno.ENOENT, "the file was removed, renamed or replaced", str(self.path))
         with suppress(OSError):  # The summary says the same.
             self.path = mark_ended(self.path)
-        self._write(_summary(self._contents))
+        self._write(summary_of(self._contents))
         self._file.close()
         finished = rename_free(self.path, lesson_of(self.path), SUFFIX)
         with suppress(OSError):  # If a power cut takes the new name away, the next start gives it again.
@@ -331,57 +249,3 @@ def is_being_written(file: BinaryIO) -> bool:
         return False  # The file system has no locks.
     fcntl.flock(file, fcntl.LOCK_UN)
     return False
-
-
-def _name_of(feedback: bytes) -> int:
-    try:
-        return codec.decode(feedback, Feedback).id
-    except codec.CodecError:  # It counts all the same, as in a report.
-        return 0
-
-
-def _chunk(messages: list[Message]) -> Chunk:
-    data = encode_messages(messages)
-    return Chunk(
-        compression=_COMPRESSION,
-        data=zstandard.ZstdCompressor(level=_LEVEL).compress(data),
-        message_end_time=messages[-1].log_time,
-        message_start_time=messages[0].log_time,
-        uncompressed_crc=zlib.crc32(data),
-        uncompressed_size=len(data),
-    )
-
-
-def _summary(contents: Contents) -> bytes:
-    """Everything after the last chunk: end of the data, summary, footer."""
-    assert contents.metadata is not None  # noqa: S101 - every file begins with its header
-    data_end = encode(DataEnd(contents.checksum))
-    statistics = Statistics(
-        attachment_count=0,
-        channel_count=len(CHANNELS),
-        channel_message_counts=contents.counts,
-        chunk_count=len(contents.chunks),
-        message_count=sum(contents.counts.values()),
-        message_end_time=contents.chunks[-1].message_end_time if contents.chunks else 0,
-        message_start_time=contents.chunks[0].message_start_time if contents.chunks else 0,
-        metadata_count=1,
-        schema_count=len(SCHEMAS),
-    )
-    groups: list[tuple[Opcode, list[McapRecord]]] = [
-        (Opcode.SCHEMA, [*SCHEMAS]),
-        (Opcode.CHANNEL, [*CHANNELS]),
-        (Opcode.STATISTICS, [statistics]),
-        (Opcode.CHUNK_INDEX, [*contents.chunks]),
-        (Opcode.METADATA_INDEX, [contents.metadata]),
-    ]
-    start = contents.end + len(data_end)
-    summary, offsets = b"", []
-    for opcode, records in groups:
-        group = encode(*records)
-        offsets.append(SummaryOffset(group_length=len(group), group_opcode=opcode, group_start=start + len(summary)))
-        summary += group
-    offsets_start = start + len(summary)
-    summary += encode(*offsets)
-    # The footer up to its own check sum is part of what the sum is over.
-    checksum = zlib.crc32(summary + struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offsets_start))
-    return data_end + summary + encode(Footer(start, offsets_start, checksum)) + MAGIC

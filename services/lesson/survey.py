@@ -7,8 +7,8 @@ from mcap.opcode import Opcode
 from mcap.records import MetadataIndex
 
 from services.lesson import lesson_header
+from services.lesson.contents import Contents
 from services.lesson.layout import Mark
-from services.lesson.lesson_file import Contents
 from services.lesson.lesson_reader import PartDecoder
 from services.lesson.mcap_records import CutOffError, DamageError, open_chunk, walk
 

@@ -28,7 +28,9 @@ from tests.taught import shipped
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.rendering, pytest.mark.timeout(3600)]
 
 _PLAN = "ten_attempts"
-_ROUND_MS = 120_000
+_COLOURED = "() => document.querySelector('.page').dataset.levels.split(',').slice(1).reduce((sum, n) => sum + Number(n), 0) > 8"
+"""More than half of the joints that the replay shows are green, yellow or red, and not grey."""
+_ROUND_MS, _DRAWN_MS = 120_000, 5_000
 _RIGHT = 9
 """Of ten cues or silences. How often they are right is measured elsewhere (`make bench-keyframes`); this pupil runs with such long
 steps of his own that he is told so in most rounds.
@@ -73,6 +75,8 @@ def _replays(page: Page) -> Iterator[Seen]:
         )
         before = page.locator(".page").get_attribute("data-attempt") or ""
         page.locator(f"[data-shown='{before}']").wait_for()
+        # The slow page names the attempt before it has drawn the first picture of its replay.
+        page.wait_for_function(_COLOURED, timeout=_DRAWN_MS)
         cue = page.locator("[data-cue]")
         title = page.locator("[data-shown] .what span").inner_text()
         _, *judged = levels(shown)
@@ -94,7 +98,7 @@ def test_ten_attempts_are_seen_with_their_cues_their_replays_and_their_colours(
     assert [one.action for one in seen] == [_title(attempt) for attempt in true]
     right = [one.cue == "".join(name for name, _ in attempt.faults) for one, attempt in zip(seen, true, strict=True)]
     assert sum(right) >= _RIGHT, [(one.action, one.cue) for one in seen]
-    assert all(one.judged > 8 and one.green > 100 for one in seen)
+    assert [one for one in seen if one.judged <= 8 or one.green <= 100] == []
 
 
 def _title(attempt: Attempt) -> str:

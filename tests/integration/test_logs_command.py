@@ -104,6 +104,15 @@ def test_a_process_that_there_is_not_is_told_with_those_that_there_are(data: Pat
     assert result.stderr == f"no line of the log in {data / 'logs'} matches; the processes with lines in it are {there}\n"
 
 
+def test_no_zip_is_written_of_a_process_that_there_is_not(data: Path) -> None:
+    result = kinebox_logs(data, "export", str(data / "nobody.zip"), "--process", "nobody")
+    assert (result.returncode, result.stdout) == (2, "")
+    there = "edge-cam01, edge-cam02, fusion, supervisor"
+    assert result.stderr.startswith("kinebox: nothing is packed: no line of the log in ")
+    assert result.stderr.endswith(f" matches; the processes with lines in it are {there}\n")
+    assert not (data / "nobody.zip").exists()
+
+
 def test_two_hundred_lines_are_shown_if_nobody_asks_for_more(data: Path) -> None:
     log_path(data / "logs", 1).write_bytes(b"damaged once\n" * 300)
     lines = kinebox_logs(data).stdout.splitlines()

@@ -22,9 +22,10 @@ from structlog.testing import capture_logs
 from models.errors import UserError
 from models.messages.lesson import FusionLog
 from services.lesson import index, lesson_header
+from services.lesson.contents import Contents
 from services.lesson.folder_lock import lock
 from services.lesson.layout import PART_SUFFIX, SUFFIX
-from services.lesson.lesson_file import Contents, LessonWriter, mark_ended
+from services.lesson.lesson_file import LessonWriter, mark_ended
 from services.lesson.lesson_reader import LessonPart, open_lesson
 from services.lesson.mcap_records import walk
 from services.lesson.recovery import DAMAGED_SUFFIX, RETRY_S, Left, reopen

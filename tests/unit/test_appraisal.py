@@ -19,8 +19,8 @@ from services.evaluation.track import Track
 from tests.taught import performance, shipped
 
 NOW_NS = 10**15
-HARDLY_SEEN = {"run"}
-"""Its overstride may have been one, by 28 %: "What stays weak" in docs/teaching.md."""
+HARDLY_SEEN = {"run", "cartwheel"}
+"""An overstride may have been one, by 28 %; bent arms are upside down: "What stays weak" in docs/teaching.md."""
 
 
 def judged(track: Track, attempt: FoundAttempt, speed: float = 1.0) -> Feedback:

@@ -11,8 +11,9 @@ from models.errors import UserError
 from models.messages.lesson import FusionLog
 from services.cli.lessons import delete, find
 from services.lesson import lesson_header
+from services.lesson.contents import chunk_of
 from services.lesson.layout import MARK, PART_SUFFIX
-from services.lesson.lesson_file import LessonWriter, _chunk
+from services.lesson.lesson_file import LessonWriter
 from services.lesson.lesson_reader import PartDecoder, open_lesson
 from services.lesson.mcap_records import MAGIC, DamageError, OpenChunk, encode
 from tests.synthetic.lesson import BEGIN_NS, SECOND_NS, header, part
@@ -140,7 +141,7 @@ def test_a_mark_that_a_stranger_nested_deeper_than_the_stack_is_damage() -> None
     mark = b'{"of_tomorrow":' + b"[" * 20_000 + b"]" * 20_000 + b',"segment_ns":1,"sequence":0}'
     messages = [Message(MARK, BEGIN_NS, mark, BEGIN_NS, 0)]
     with pytest.raises(DamageError, match="message 0 holds what no lesson does"):
-        PartDecoder().decode(OpenChunk(_chunk(messages), tuple(messages)))
+        PartDecoder().decode(OpenChunk(chunk_of(messages), tuple(messages)))
 
 
 def test_a_header_holds_any_title(tmp_path: Path) -> None:

@@ -73,8 +73,13 @@ class Reading:
     def _roots_m(self) -> Float:
         """(T, 17, 3, 3) of the joints' covariance, with what lies along their way."""
         late_m = self.model.timing_s * np.nan_to_num(rate_to_the_edge(self.track.joints_m, self.track.frame_s))
-        scale = np.array(self.model.noise_scale)[:, None, None]
+        scale = (self._grown * np.array(self.model.noise_scale))[..., None, None]
         return roots(scale**2 * self.track.covariance_m2 + late_m[..., :, None] * late_m[..., None, :])
+
+    @cached_property
+    def _grown(self) -> Float:
+        """(T, 17) by how much errors are larger than of somebody upright."""
+        return self.model.grown(self.track.joints_m)
 
     @cached_property
     def _moving_roots_m(self) -> Float:
@@ -130,7 +135,7 @@ class Reading:
         order = signal.order
         roots_m, joints_seen = (self._moving_roots_m, self._moving_seen) if order else (self._roots_m, self.track.seen)
         noise = _rate_share(model.noise_s, order) * (slopes[..., None, :] @ roots_m[:, used])[..., 0, :]
-        lasting = _rate_share(model.landmark_s, order) * slopes * np.array(model.landmark_m)[used, None]
+        lasting = _rate_share(model.landmark_s, order) * slopes * (self._grown * model.landmark_m)[:, used, None]
         noise, lasting = ((model.mixed[used].T @ factors).reshape(count, ERRORS) for factors in (noise, lasting))
         shares = self.stature.sigma_m / self.stature.metres if signal.unit == "pct" else 0.0
         seen = _seen(slopes, joints_seen[:, used]) & np.isfinite(value)

@@ -48,6 +48,8 @@ from tests.bench.teaching.finding import (
     shipped,
 )
 from tests.bench.teaching.lessons import lesson_of_all
+from tests.bench.teaching.twin_beside import attempt_figures, gaps_pct, twins_of_films
+from tests.bench.teaching.twin_beside import table as beside
 from tests.bench.teaching.twinned import TRACK_HZ, Truth, smooth_of, truth_of
 
 WHERE: Final = ("true", "twin", "rendered", "idle")
@@ -217,7 +219,10 @@ def main() -> int:
         if "twin" in on:
             _add(report, split, "twin", on_twin(split, seeds, options.data))
         if "rendered" in on:
-            _add(report, split, "rendered", on_rendered(split, seeds, options.data))
+            rendered = _add(report, split, "rendered", on_rendered(split, seeds, options.data))
+            twin = attempt_figures(*_heard(split, (Lesson(*one) for one in twins_of_films(split, seeds, options.data))))
+            report.add({f"twin_gap_pct.{name}": gap for name, gap in gaps_pct(rendered, twin).items()})
+            report.tables.append(beside(rendered, twin))
         if "idle" in on:
             idle = [one.found for one in idle_on_twin(split, seeds, options.data)]
             minutes = sum(one.seconds for one in idle) / 60
@@ -241,13 +246,21 @@ def _where(figure: str) -> str | None:
     return next((where for word, where in words.items() if word in figure.split(".")), None)
 
 
-def _add(report: Report, split: Split, where: str, lessons: Iterator[Lesson]) -> None:
+def _add(report: Report, split: Split, where: str, lessons: Iterator[Lesson]) -> dict[str, float]:
+    """Take what the lessons come to into the report; returns what the twin is compared by."""
+    all_found, said = _heard(split, lessons)
+    report.add(figures(all_found, where) | {f"{name}.{where}": value for name, value in cues.figures(said).items()})
+    report.tables += [table(all_found, where), *cues.confusion(said)]
+    return attempt_figures(all_found, said)
+
+
+def _heard(split: Split, lessons: Iterator[Lesson]) -> tuple[list[Found], list[cues.Result]]:
+    """What was found, and what is said of it."""
     all_found, said = [], []
     for one in lessons:
         all_found.append(one.found)
         said += cues.of_found(split, one.seed, one.track, one.found)
-    report.add(figures(all_found, where) | {f"{name}.{where}": value for name, value in cues.figures(said).items()})
-    report.tables += [table(all_found, where), *cues.confusion(said)]
+    return all_found, said
 
 
 if __name__ == "__main__":
